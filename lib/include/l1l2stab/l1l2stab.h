@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * l1l2stab: one-pass video stabilization with L1-L2 optimal camera paths.
+ *
+ * Source: Qu & Song, "Video stabilization with L1-L2 optimization", ICIP 2013. Equation numbers are that paper's.
+ *
+ * Conventions
+ *   Frames       t = 0, 1, 2, ... in the order of l1l2stab_push().
+ *   Coordinates  pixels, origin at the frame's centre, x right, y down. Pixel centres lie at half-integers: the
+ *                frame is exactly [-W/2, W/2] x [-H/2, H/2].
+ *   Matrices     3x3, row-major, act on column vectors (x, y, 1).
+ *   Directions   F_t maps frame t to frame t-1; C_t = F_1 ... F_t (eq. 1); P_t = C_t B_t (eq. 2);
+ *                B_t maps the crop window to the source frame: it is the inverse map that a warp wants.
+ *   Strides      bytes. Times: nanoseconds.
+ *
+ * Delay
+ *   One frame in, one frame out, in order. Frame t can be pulled once frame t + window - 1 has been pushed, or after
+ *   l1l2stab_finish(). The library holds at most `window` frames.
+ *
+ * Threads
+ *   Calls on one L1L2Stab must not overlap. Different instances are independent; there is no global state.
+ *   The same frames and config give the same output, bit for bit, whatever `threads` is.
+ *
+ * The loop (samples/1-stabilize-raw.c runs it)
+ *
+ *     L1L2StabResult r = L1L2STAB_OK;
+ *     while (r >= 0 && read_frame(&in)) {
+ *         if ((r = l1l2stab_push(s, &in)) != L1L2STAB_OK) {
+ *             drop_frame(&in);                          // still the caller's
+ *             break;
+ *         }
+ *         while ((r = l1l2stab_pull(s, &out, NULL)) == L1L2STAB_OK)
+ *             write_frame(&out);
+ *     }
+ *     if (r >= 0)
+ *         r = l1l2stab_finish(s);
+ *     while (r == L1L2STAB_OK)
+ *         if ((r = l1l2stab_pull(s, &out, NULL)) == L1L2STAB_OK)
+ *             write_frame(&out);                        // ends with L1L2STAB_EOS
+ */
+#ifndef L1L2STAB_H
+#define L1L2STAB_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define L1L2STAB_API __attribute__((visibility("default")))
+#define L1L2STAB_MUST_CHECK __attribute__((warn_unused_result))
+#else
+#define L1L2STAB_API
+#define L1L2STAB_MUST_CHECK
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* meson.build reads these three. */
+#define L1L2STAB_VERSION_MAJOR 0
+#define L1L2STAB_VERSION_MINOR 1
+#define L1L2STAB_VERSION_PATCH 0
+
+typedef struct L1L2Stab L1L2Stab;
+
+/* >= 0: flow states, < 0: errors. */
+typedef enum L1L2StabResult {
+    L1L2STAB_OK = 0,
+    L1L2STAB_AGAIN = 1,            /* pull: push more first; push: pull first */
+    L1L2STAB_EOS = 2,              /* finished, and every frame has been pulled */
+    L1L2STAB_ERR_ARGUMENT = -1,    /* the caller's: a value out of range, a NULL; the log says which */
+    L1L2STAB_ERR_STATE = -2,       /* the caller's: a call out of order, such as push after finish */
+    L1L2STAB_ERR_UNSUPPORTED = -3, /* well-formed, but not offered; the log says what is */
+    L1L2STAB_ERR_NOMEM = -4,       /* the system's: out of memory */
+    L1L2STAB_ERR_BACKEND = -5      /* ours: the imaging or solver library failed in a way with no fallback */
+} L1L2StabResult;
+
+/* Plane order in memory as in GStreamer and FFmpeg; all 8 bits a component. Odd sizes: chroma planes are rounded up. */
+typedef enum L1L2StabFormat {
+    L1L2STAB_FORMAT_UNKNOWN = 0,
+    L1L2STAB_FORMAT_GRAY8 = 1,
+    L1L2STAB_FORMAT_I420 = 2, /* Y, U, V; chroma halved both ways */
+    L1L2STAB_FORMAT_YV12 = 3, /* Y, V, U; chroma halved both ways */
+    L1L2STAB_FORMAT_NV12 = 4, /* Y, UV interleaved; chroma halved both ways */
+    L1L2STAB_FORMAT_NV21 = 5, /* Y, VU interleaved; chroma halved both ways */
+    L1L2STAB_FORMAT_Y42B = 6, /* Y, U, V; chroma halved horizontally */
+    L1L2STAB_FORMAT_Y444 = 7, /* Y, U, V */
+    L1L2STAB_FORMAT_BGRX = 8, /* one plane, 4 bytes a pixel in this order; X is undefined */
+    L1L2STAB_FORMAT_RGBX = 9,
+    L1L2STAB_FORMAT_BGRA = 10,
+    L1L2STAB_FORMAT_RGBA = 11,
+    L1L2STAB_FORMAT_BGR = 12, /* one plane, 3 bytes a pixel in this order */
+    L1L2STAB_FORMAT_RGB = 13
+} L1L2StabFormat;
+
+/* Where a chroma sample lies within the luma samples that share it. Only subsampled directions look at it. */
+typedef enum L1L2StabChromaSite {
+    L1L2STAB_CHROMA_SITE_LEFT = 0,    /* on the left column, between the rows (MPEG-2, H.264, HEVC): the default */
+    L1L2STAB_CHROMA_SITE_CENTER = 1,  /* between columns and rows (JPEG, MPEG-1) */
+    L1L2STAB_CHROMA_SITE_TOP_LEFT = 2 /* on the left column and the top row (BT.2020 UHD) */
+} L1L2StabChromaSite;
+
+/* How the paths of two windows are joined (paper, section 4.1). */
+typedef enum L1L2StabJoin {
+    L1L2STAB_JOIN_CONTINUOUS = 0, /* the next window goes on from the last three frames given out: no seam */
+    L1L2STAB_JOIN_BLEND = 1       /* eq. (8) with its weights put right: the overlap is averaged */
+} L1L2StabJoin;
+
+typedef enum L1L2StabInterpolation {
+    L1L2STAB_INTERPOLATION_BILINEAR = 0, /* 2x2 taps: fast, soft, its sharpness pulses */
+    L1L2STAB_INTERPOLATION_BICUBIC = 1,  /* 4x4 taps, a = -0.75 */
+    L1L2STAB_INTERPOLATION_LANCZOS = 2   /* 6x6 taps, three lobes */
+} L1L2StabInterpolation;
+
+typedef enum L1L2StabOutputSize {
+    L1L2STAB_OUTPUT_SIZE_INPUT = 0, /* the crop window is zoomed to fill the input's size */
+    L1L2STAB_OUTPUT_SIZE_CROP = 1   /* the crop window's own size, rounded down to even numbers: no zoom */
+} L1L2StabOutputSize;
+
+typedef enum L1L2StabLogLevel {
+    L1L2STAB_LOG_ERROR = 1, /* an L1L2STAB_ERR_* follows */
+    L1L2STAB_LOG_WARN = 2,  /* output quality suffers */
+    L1L2STAB_LOG_INFO = 3,  /* once per life */
+    L1L2STAB_LOG_DEBUG = 4, /* once per event */
+    L1L2STAB_LOG_TRACE = 5  /* once per frame */
+} L1L2StabLogLevel;
+
+typedef struct L1L2StabLogger {
+    /* A finished message without newline, on the caller's thread. NULL: silent. */
+    void (*write)(void *cookie, L1L2StabLogLevel level, const char *message);
+    void *cookie;
+    L1L2StabLogLevel max_level; /* more verbose messages are not even formatted; default L1L2STAB_LOG_INFO */
+} L1L2StabLogger;
+
+/* Adding a field? Append it, and extend l1l2stab_config_init() and the checks in config.c. */
+typedef struct L1L2StabConfig {
+    size_t struct_size;            /* set by l1l2stab_config_init() */
+    L1L2StabFormat format;         /* required */
+    int width;                     /* pixels, [16, 16384], required */
+    int height;                    /* pixels, [16, 16384], required */
+    double frame_rate;             /* frames a second, [0, 1000]; 0 = unknown, taken as 30. Default 0 */
+    L1L2StabChromaSite chroma_site; /* default LEFT */
+    double lambda;                 /* eq. (4), [0, 1000], default 0.5: 0.1 nearly pure L1, 2 follows the shake */
+    double crop_ratio;             /* kept part of each side, [0.5, 0.99], default 0.9 */
+    int window;                    /* N, frames, [4, 900], default 150: look-ahead and delay */
+    int overlap;                   /* K, frames, [3, window), and 2K <= window for BLEND; 0 = by join. Default 0 */
+    L1L2StabJoin join;             /* default CONTINUOUS */
+    L1L2StabInterpolation interpolation; /* default BICUBIC */
+    L1L2StabOutputSize output_size; /* default INPUT */
+    int analysis_size;             /* longer side of the picture that is tracked, pixels, [128, 4096], default 640 */
+    int threads;                   /* for the warp, [0, 64]; 0 = as many as there are cores. Default 0 */
+    uint64_t seed;                 /* of RANSAC's draws. Default 1 */
+    L1L2StabLogger logger;         /* default: silent */
+} L1L2StabConfig;
+
+/* The path starts anew at this frame: nothing before it belongs to the same shot. */
+#define L1L2STAB_FRAME_DISCONT (1u << 0)
+
+typedef struct L1L2StabFrame {
+    uint8_t *data[4];    /* planes; only read from by push, only written to by pull; unused ones NULL */
+    ptrdiff_t stride[4]; /* bytes from row to row, may be negative */
+    int64_t pts;         /* the caller's; pull() gives it back with the same frame */
+    void *opaque;        /* ditto */
+    /* push only: called exactly once, when the library needs the pixels no longer. Never called if push() did not
+     * return OK. Must not call back into the library. May be NULL. */
+    void (*release)(void *opaque);
+    unsigned flags;      /* push only: L1L2STAB_FRAME_* */
+} L1L2StabFrame;
+
+/* Which model of the inter-frame motion was used. */
+typedef enum L1L2StabModel {
+    L1L2STAB_MODEL_NONE = 0,        /* a path's first frame: there is no motion */
+    L1L2STAB_MODEL_IDENTITY = 1,    /* nothing could be measured: taken as still */
+    L1L2STAB_MODEL_PREDICTED = 2,   /* nothing could be measured: the motion before it, fading */
+    L1L2STAB_MODEL_TRANSLATION = 3, /* too few points for more */
+    L1L2STAB_MODEL_SIMILARITY = 4
+} L1L2StabModel;
+
+#define L1L2STAB_INFO_PATH_START (1u << 0)    /* first frame of a path */
+#define L1L2STAB_INFO_MOTION_LOST (1u << 1)   /* the motion into this frame was not measured */
+#define L1L2STAB_INFO_PATH_FALLBACK (1u << 2) /* the solver did not converge: a feasible path was held instead */
+
+/* Where a frame's time went. */
+typedef enum L1L2StabStage {
+    L1L2STAB_STAGE_SCALE = 0, /* to the analysed size, pyramid */
+    L1L2STAB_STAGE_TRACK = 1, /* corners and Lucas-Kanade */
+    L1L2STAB_STAGE_FIT = 2,   /* RANSAC and least squares */
+    L1L2STAB_STAGE_SOLVE = 3, /* eq. (4); all on the first frame of what a window gives out */
+    L1L2STAB_STAGE_WARP = 4,
+    L1L2STAB_STAGE_COUNT = 5
+} L1L2StabStage;
+
+/* What was measured of a frame and done to it. Matrices as at the top of this file, in pixels. */
+typedef struct L1L2StabInfo {
+    uint64_t index;      /* the frame's number since create or reset, from 0 */
+    uint64_t path_index; /* the frame's number in its path, from 0 */
+    double F[9];         /* measured motion: frame t to frame t-1; identity at a path's first frame */
+    double B[9];         /* update transform: crop window to frame t */
+    double S[9];         /* smooth step P_{t-1}^-1 P_t: what is left of the motion; identity at a path's first frame */
+    double C[9];         /* camera path relative to the path's first frame; accumulated, for display */
+    double P[9];         /* smoothed path, ditto */
+    double warp[9];      /* output pixel to source pixel, origins at the centres: what was rendered */
+    double lambda;       /* as configured */
+    double crop_ratio;   /* as configured */
+    int tracks;          /* points that were tracked into this frame and passed the backward check */
+    int inliers;         /* of these, consistent with F */
+    int solver_iterations; /* of the window that this frame came from */
+    L1L2StabModel model;
+    unsigned flags;      /* L1L2STAB_INFO_* */
+    int64_t stage_ns[L1L2STAB_STAGE_COUNT]; /* time spent, by stage */
+    uint8_t reserved[64];
+} L1L2StabInfo;
+
+/* Fill *cfg with the defaults; pass sizeof *cfg, so that a program built against an older header goes on working. */
+L1L2STAB_API void l1l2stab_config_init(L1L2StabConfig *cfg, size_t struct_size);
+
+/* The delay that this config implies, in frames: its window. An error < 0 if the config is not valid. */
+L1L2STAB_API int l1l2stab_config_delay(const L1L2StabConfig *cfg);
+
+/* The size in pixels of what pull() writes. An error if the config is not valid; then *width and *height are 0. */
+L1L2STAB_API L1L2StabResult l1l2stab_config_output_size(const L1L2StabConfig *cfg, int *width, int *height);
+
+/* cfg need only live during the call, the logger's cookie as long as the instance. On error *out is NULL and the
+ * reason has been logged. */
+L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_create(L1L2Stab **out, const L1L2StabConfig *cfg);
+
+/* Hand over the next frame: measures its motion.
+ * OK: the library reads in->data until it calls in->release. AGAIN: `window` frames are held, pull first.
+ * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. */
+L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in);
+
+/* Which frame would pull() give next? OK sets *pts and *opaque (each may be NULL); else as pull(). */
+L1L2STAB_API L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque);
+
+/* Render the oldest frame that is ready into the caller's planes, and release it.
+ * out: data and stride are read, pts and opaque are set (opaque of a frame with a release function is gone by then);
+ * NULL: nothing is rendered, for those who want the numbers alone. info: may be NULL.
+ * AGAIN: push more, or finish. EOS: finished and drained. Error: the frame remains queued. */
+L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info);
+
+/* No more input: what is held can be pulled until EOS. reset() starts anew. */
+L1L2STAB_API L1L2StabResult l1l2stab_finish(L1L2Stab *s);
+
+/* Drop everything held (releasing it) and forget the path; config and memory are kept. Afterwards the instance is as
+ * good as new: the same frames give the same output. */
+L1L2STAB_API void l1l2stab_reset(L1L2Stab *s);
+
+/* Free (releasing what is held) and set *s to NULL; NULL and &NULL are fine. */
+L1L2STAB_API void l1l2stab_free(L1L2Stab **s);
+
+/* One line on a result: whose fault it is and what to do. Never NULL, never to be freed. */
+L1L2STAB_API const char *l1l2stab_strerror(L1L2StabResult result);
+
+/* "major.minor.patch" of the library that runs. */
+L1L2STAB_API const char *l1l2stab_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* L1L2STAB_H */

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Algorithm 1, steps 1 and 2: from one frame to the next, the camera's motion F_t.
+ *
+ * Features are Shi-Tomasi corners with a minimum distance, re-selected every 10 frames or when too few are left,
+ * followed by pyramidal Lucas-Kanade with a backward check; RANSAC fits a similarity, least squares refines it.
+ * What fails the limits of motion.c falls back in steps: similarity, translation, predicted, identity.
+ */
+#ifndef L1L2_MOTION_H
+#define L1L2_MOTION_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "format.h"
+#include "geom.h"
+
+typedef struct L1L2Motion L1L2Motion;
+
+typedef struct L1L2MotionConfig {
+    int width, height;  /* of the frames, pixels */
+    int components;     /* of the frames' first plane */
+    L1L2Luma luma;
+    int analysis_size;  /* longer side of the tracked picture, pixels */
+    uint64_t seed;
+    const L1L2StabLogger *log;
+} L1L2MotionConfig;
+
+typedef struct L1L2MotionResult {
+    L1L2Mat F;          /* frame t to frame t-1, unit: the frame's diagonal; finite, invertible */
+    L1L2StabModel model;
+    int tracks, inliers;
+    int64_t scale_ns, track_ns, fit_ns;
+} L1L2MotionResult;
+
+/* On error *out is NULL. cfg->log must outlive the object. */
+L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg);
+void l1l2_motion_free(L1L2Motion *m);
+
+/* As new, with its memory kept. */
+void l1l2_motion_reset(L1L2Motion *m);
+
+/* Take the next frame's first plane; it is read during the call only. starts_path: there is no motion into this frame
+ * (model NONE, F the identity). An error leaves the object as reset. */
+L1L2StabResult l1l2_motion_push(L1L2Motion *m, const uint8_t *data, ptrdiff_t stride, bool starts_path,
+                                L1L2MotionResult *out);
+
+#endif

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT */
+/* A small persistent pool of threads for work that falls into independent parts, such as the rows of a picture. */
+#ifndef L1L2_POOL_H
+#define L1L2_POOL_H
+
+typedef struct L1L2Pool L1L2Pool;
+
+/* threads >= 1 counts the caller's own; 0: as many as there are cores this process may use. Fewer are started where the
+ * system refuses. NULL when out of memory. */
+L1L2Pool *l1l2_pool_create(int threads);
+void l1l2_pool_free(L1L2Pool *pool);
+
+/* How many threads work, the caller's included. */
+int l1l2_pool_threads(const L1L2Pool *pool);
+
+/* Calls part(context, 0) ... part(context, parts - 1), each once, in any order and on any thread; returns when all are
+ * done. One run at a time. */
+void l1l2_pool_run(L1L2Pool *pool, int parts, void (*part)(void *context, int index), void *context);
+
+#endif

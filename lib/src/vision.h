@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The seam to the imaging library: the grey, downscaled picture of each frame, its pyramid, Shi-Tomasi corners
+ * (Shi & Tomasi, CVPR 1994) and pyramidal Lucas-Kanade. Plain C types only; the other side is vision_opencv.cpp.
+ *
+ * Points are pixels of the downscaled picture as the imaging library counts them: origin at the top left pixel's
+ * centre. l1l2_vision_size() tells that picture's size, so that the caller can convert.
+ */
+#ifndef L1L2_VISION_H
+#define L1L2_VISION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "format.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct L1L2Vision L1L2Vision;
+
+typedef struct L1L2VisionConfig {
+    int width, height;    /* of the frames, pixels */
+    int components;       /* of the frames' first plane */
+    L1L2Luma luma;
+    int analysis_size;    /* longer side of the downscaled picture, pixels; frames are never enlarged */
+    const L1L2StabLogger *log;
+} L1L2VisionConfig;
+
+typedef struct L1L2Pixel {
+    float x, y;
+} L1L2Pixel;
+
+/* On error *out is NULL. cfg->log must outlive the object. */
+L1L2StabResult l1l2_vision_create(L1L2Vision **out, const L1L2VisionConfig *cfg);
+void l1l2_vision_free(L1L2Vision *v);
+
+/* Forget both pictures. */
+void l1l2_vision_reset(L1L2Vision *v);
+
+/* Size of the downscaled picture. */
+void l1l2_vision_size(const L1L2Vision *v, int *width, int *height);
+
+/* The current picture becomes the previous one; the frame's first plane, downscaled by area averaging, becomes the
+ * current one, with its pyramid. Each pyramid is built once. */
+L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t stride);
+
+/* Up to `capacity` new corners of the PREVIOUS picture, strongest first, at least min_distance pixels from each other
+ * and from the `count` points of `taken`. *found says how many. */
+L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int count, double min_distance,
+                                   L1L2Pixel *corners, int capacity, int *found);
+
+/* Follow `count` points of the previous picture into the current one and back.
+ * ok[i]: found both ways, within the picture, and back within max_return pixels of where it started. */
+L1L2StabResult l1l2_vision_track(L1L2Vision *v, const L1L2Pixel *from, L1L2Pixel *to, bool *ok, int count,
+                                 double max_return);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT */
+#include "path.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "crop.h"
+#include "log.h"
+#include "mem.h"
+#include "path_qp.h"
+#include "plan.h"
+
+typedef struct Slot {
+    L1L2PathFrame frame;
+    L1L2Mat next_B; /* the B that an older window found for a frame it did not give out; blend joins with it */
+} Slot;
+
+struct L1L2Path {
+    L1L2PathConfig cfg;
+    L1L2Crop crop;
+    L1L2Plan plan;
+    Slot *slots;      /* frame t is at t modulo capacity */
+    int capacity;     /* window + the three frames that a window looks back on */
+    int64_t start;    /* frame with which the current path starts */
+    int64_t pushed, decided, pulled; /* frames since reset */
+    L1L2WindowProblem *problem;
+    L1L2Qp *qp;
+    double *z, *y;
+    double (*solution)[L1L2_DIM];
+};
+
+static Slot *slot(L1L2Path *path, int64_t t)
+{
+    return &path->slots[t % path->capacity];
+}
+
+L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg)
+{
+    *out = NULL;
+    L1L2Path *path = l1l2_mem_new(1, sizeof *path);
+    if (!path)
+        return L1L2STAB_ERR_NOMEM;
+    path->cfg = *cfg;
+    path->crop = l1l2_crop_make(cfg->width, cfg->height, cfg->crop_ratio);
+    path->capacity = cfg->window + L1L2_HISTORY + 1;
+    path->slots = l1l2_mem_new((size_t)path->capacity, sizeof *path->slots);
+    path->problem = l1l2_window_problem_create(cfg->window);
+    path->qp = l1l2_path_qp_create(cfg->window);
+    path->solution = l1l2_mem_new((size_t)cfg->window, sizeof *path->solution);
+    if (path->qp) {
+        path->z = l1l2_mem_new((size_t)path->qp->max_cols, sizeof *path->z);
+        path->y = l1l2_mem_new((size_t)path->qp->max_rows, sizeof *path->y);
+    }
+    if (!path->slots || !path->problem || !path->qp || !path->solution || !path->z || !path->y) {
+        l1l2_path_free(path);
+        return L1L2STAB_ERR_NOMEM;
+    }
+    l1l2_path_reset(path);
+    *out = path;
+    return L1L2STAB_OK;
+}
+
+void l1l2_path_free(L1L2Path *path)
+{
+    if (!path)
+        return;
+    l1l2_mem_free(path->slots);
+    l1l2_window_problem_free(path->problem);
+    l1l2_qp_free(path->qp);
+    l1l2_mem_free(path->solution);
+    l1l2_mem_free(path->z);
+    l1l2_mem_free(path->y);
+    l1l2_mem_free(path);
+}
+
+void l1l2_path_reset(L1L2Path *path)
+{
+    path->start = path->pushed = path->decided = path->pulled = 0;
+    path->plan = l1l2_plan_start(path->cfg.window, path->cfg.overlap);
+}
+
+/* eq. (1), relative to the window's first frame: C of the frames of the window, and P of the three before it. */
+static void describe_window(L1L2Path *path, const L1L2PlanStep *step)
+{
+    L1L2WindowProblem *p = path->problem;
+    const int64_t first = path->start + step->first;
+    const double rate = path->cfg.frame_rate > 0.0 ? path->cfg.frame_rate : 30.0;
+    L1L2Mat camera = l1l2_mat_identity();
+    p->count = step->count;
+    for (int t = 0; t < step->count; t++) {
+        if (t > 0)
+            camera = l1l2_mat_mul(camera, slot(path, first + t)->frame.F);
+        l1l2_q_from_mat(&camera, p->camera[t]);
+        p->lambda[t] = path->cfg.lambda * 30.0 / rate;
+        l1l2_crop_rows(&path->crop, &camera, p->G[t], p->lo[t], p->hi[t]);
+    }
+    p->history = 0;
+    if (path->cfg.join != L1L2STAB_JOIN_CONTINUOUS)
+        return;
+    camera = l1l2_mat_identity();
+    for (int back = 1; back <= L1L2_HISTORY && back <= step->first; back++) {
+        L1L2Mat inverse;
+        l1l2_mat_inverse(slot(path, first - back + 1)->frame.F, &inverse);
+        camera = l1l2_mat_mul(camera, inverse);
+        const L1L2Mat smooth = l1l2_mat_mul(camera, slot(path, first - back)->frame.B);
+        l1l2_q_from_mat(&smooth, p->past[L1L2_HISTORY - back]);
+        p->history = back;
+    }
+}
+
+/* A path for when no solver arrives: goes on at the last speed, which fades; the crop limits of each frame, met one
+ * after the other by admit(), bend it. Feasible and continuous with what was given out, but not smooth. */
+static void hold_course(L1L2Path *path, const L1L2PlanStep *step)
+{
+    const double fade = 0.95;
+    const int64_t first = path->start + step->first;
+    L1L2Mat B = step->first > 0 ? slot(path, first - 1)->frame.B : l1l2_mat_identity();
+    double speed_x = 0.0, speed_y = 0.0;
+    if (step->first > 0)
+        speed_x = slot(path, first - 1)->frame.S.m[2], speed_y = slot(path, first - 1)->frame.S.m[5];
+    for (int t = 0; t < step->count; t++) {
+        if (step->first + t > 0) {
+            L1L2Mat inverse; /* P_t = P_{t-1} S, so B_t = F_t^-1 B_{t-1} S */
+            l1l2_mat_inverse(slot(path, first + t)->frame.F, &inverse);
+            B = l1l2_mat_mul(l1l2_mat_mul(inverse, B), l1l2_mat_translation(speed_x, speed_y));
+            B = l1l2_crop_admit(&path->crop, &B);
+        }
+        speed_x *= fade, speed_y *= fade;
+        slot(path, first + t)->next_B = B;
+    }
+}
+
+/* Solves the window into path->solution. */
+static bool solve_window(L1L2Path *path, L1L2QpReport *report)
+{
+    L1L2WindowProblem *p = path->problem;
+    l1l2_path_qp_fill(p, path->qp);
+    for (int i = 0; i < path->qp->cols; i++)
+        path->z[i] = i < L1L2_DIM * p->count ? p->camera[i / L1L2_DIM][i % L1L2_DIM] : 0.0;
+    const L1L2StabResult result = l1l2_qp_solve(path->qp, path->z, path->y, report);
+    if (result != L1L2STAB_OK)
+        return false;
+    for (int t = 0; t < p->count; t++)
+        for (int j = 0; j < L1L2_DIM; j++) {
+            path->solution[t][j] = path->z[l1l2_col_q(t, j)];
+            if (!isfinite(path->solution[t][j]))
+                return false;
+        }
+    return true;
+}
+
+/* eq. (2), B_t = C_t^-1 P_t for the frames of the window; what the solver's tolerance leaves outside is pulled in. */
+static void update_transforms(L1L2Path *path, const L1L2PlanStep *step)
+{
+    const L1L2WindowProblem *p = path->problem;
+    for (int t = 0; t < step->count; t++) {
+        const L1L2Mat camera = l1l2_q_to_mat(p->camera[t]), smooth = l1l2_q_to_mat(path->solution[t]);
+        L1L2Mat inverse;
+        l1l2_mat_inverse(camera, &inverse);
+        const L1L2Mat B = l1l2_mat_mul(inverse, smooth);
+        slot(path, path->start + step->first + t)->next_B = l1l2_crop_admit(&path->crop, &B);
+    }
+}
+
+/* eq. (8), weights put right (see path.h). P = C B is linear in B for one camera path, so averaging B averages P. */
+static L1L2Mat blend(const L1L2Mat *old_B, const L1L2Mat *new_B, int i, int overlap)
+{
+    const double new_weight = (double)i / (overlap + 1);
+    L1L2Mat B;
+    for (int k = 0; k < 9; k++)
+        B.m[k] = old_B->m[k] + new_weight * (new_B->m[k] - old_B->m[k]);
+    return B;
+}
+
+static void decide(L1L2Path *path, const L1L2PlanStep *step, bool fallback, int iterations)
+{
+    for (int t = 0; t < step->give; t++) {
+        const int64_t frame = path->start + step->first + t;
+        L1L2PathFrame *f = &slot(path, frame)->frame;
+        f->B = path->cfg.join == L1L2STAB_JOIN_BLEND && t < step->shared
+                   ? blend(&f->B, &slot(path, frame)->next_B, t + 1, step->shared)
+                   : slot(path, frame)->next_B;
+        f->S = l1l2_mat_identity();
+        if (frame > path->start) {
+            L1L2Mat inverse;
+            l1l2_mat_inverse(slot(path, frame - 1)->frame.B, &inverse);
+            f->S = l1l2_mat_mul(l1l2_mat_mul(inverse, f->F), f->B);
+        }
+        f->fallback = fallback;
+        f->iterations = iterations;
+    }
+    for (int t = step->give; t < step->count; t++) {
+        Slot *s = slot(path, path->start + step->first + t);
+        s->frame.B = s->next_B; /* what the next window blends with */
+    }
+    path->decided = path->start + step->first + step->give;
+}
+
+/* Solves every window that can be solved. */
+static void advance(L1L2Path *path, bool ended)
+{
+    L1L2PlanStep step;
+    while (l1l2_plan_next(&path->plan, path->pushed - path->start, ended, &step)) {
+        L1L2QpReport report = {0};
+        describe_window(path, &step);
+        const bool solved = solve_window(path, &report);
+        if (solved)
+            update_transforms(path, &step);
+        else
+            hold_course(path, &step);
+        if (!solved || !report.converged)
+            l1l2_log(path->cfg.log, L1L2STAB_LOG_WARN,
+                     "path: the solver did not arrive in %d iterations (residuals %.2g, %.2g)%s", report.iterations,
+                     report.primal_residual, report.dual_residual, solved ? "" : "; the last course is held");
+        decide(path, &step, !solved || !report.converged, report.iterations);
+    }
+}
+
+void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path)
+{
+    assert(path->pushed - path->pulled < path->cfg.window + 1);
+    starts_path = starts_path || path->pushed == 0;
+    if (starts_path) {
+        advance(path, true);
+        path->start = path->pushed;
+        path->plan = l1l2_plan_start(path->cfg.window, path->cfg.overlap);
+    }
+    L1L2PathFrame *f = &slot(path, path->pushed)->frame;
+    f->F = starts_path ? l1l2_mat_identity() : *F;
+    f->path_index = (uint64_t)(path->pushed - path->start);
+    path->pushed++;
+    advance(path, false);
+}
+
+void l1l2_path_finish(L1L2Path *path)
+{
+    advance(path, true);
+}
+
+bool l1l2_path_pull(L1L2Path *path, L1L2PathFrame *out)
+{
+    if (path->pulled == path->decided)
+        return false;
+    *out = slot(path, path->pulled++)->frame;
+    return true;
+}

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Algorithm 1, steps 2 and 3, over a stream of any length: inter-frame motions in, update transforms out.
+ *
+ * Numbers only, no pixels. Unit: the frame's diagonal. A path is the frames from one cut to the next; windows, joins
+ * and ends are those of plan.h. C_t is taken relative to each window's first frame, so numbers stay near 1 however
+ * long the video is.
+ *
+ * Joins (paper, section 4.1)
+ *   continuous  the differences of a window reach back over the last three frames given out before it, as constants.
+ *   blend       eq. (8) on the K shared frames. As printed, v_i = i/K weighs the OLD window: it would jump at both
+ *               ends. The weights run the other way here: old 1 - i/(K+1), new i/(K+1), i = 1..K.
+ */
+#ifndef L1L2_PATH_H
+#define L1L2_PATH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <l1l2stab/l1l2stab.h>
+
+#include "geom.h"
+
+typedef struct L1L2Path L1L2Path;
+
+typedef struct L1L2PathConfig {
+    int width, height;  /* pixels: only their ratio matters */
+    double lambda;      /* of eq. (4) at 30 frames/s */
+    double frame_rate;  /* frames a second; 0: 30 */
+    double crop_ratio;
+    int window, overlap; /* N, K */
+    L1L2StabJoin join;
+    const L1L2StabLogger *log;
+} L1L2PathConfig;
+
+typedef struct L1L2PathFrame {
+    L1L2Mat F, B;        /* measured motion, update transform */
+    L1L2Mat S;           /* smooth step P_{t-1}^-1 P_t; identity at a path's first frame */
+    uint64_t path_index; /* frames since the path's start */
+    bool fallback;       /* the solver did not arrive: the path was held feasible and continuous instead */
+    int iterations;      /* of the solver, in the frame's window */
+} L1L2PathFrame;
+
+/* On error *out is NULL. cfg->log must outlive the object. */
+L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg);
+void l1l2_path_free(L1L2Path *path);
+
+/* As new, with its memory kept. */
+void l1l2_path_reset(L1L2Path *path);
+
+/* The next frame's motion F (frame t to t-1; finite and invertible). starts_path: F is not used, the path before it
+ * ends. At most `window` frames may be waiting for l1l2_path_pull() before the call. */
+void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path);
+
+/* No more frames: all that are left get decided. */
+void l1l2_path_finish(L1L2Path *path);
+
+/* The oldest frame that has not been pulled, if it is decided: frame t is when frame t + window - 1 has been pushed. */
+bool l1l2_path_pull(L1L2Path *path, L1L2PathFrame *out);
+
+#endif

@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The public entry points and the state machine: Algorithm 1, one frame at a time.
+ *
+ *   push    motion.c: steps 1 and 2a, F_t     path.c: steps 2b and 3, C_t and B_t
+ *   pull    warp.c: step 5
+ *
+ * States: open -> finished (finish) -> open (reset). Frames wait in the ring from push to pull.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "clock.h"
+#include "config.h"
+#include "log.h"
+#include "mem.h"
+#include "path.h"
+#include "ring.h"
+#include "warp.h"
+
+struct L1L2Stab {
+    L1L2StabConfig cfg;
+    const L1L2FormatInfo *format;
+    int out_width, out_height;
+    L1L2Motion *motion;
+    L1L2Path *path;
+    L1L2Warp *warp;
+    L1L2Ring ring;
+    bool finished;
+    bool decided;             /* `next` holds the path of the oldest held frame */
+    L1L2PathFrame next;
+    uint64_t pulled;          /* frames since create or reset */
+    L1L2Mat camera, smooth;   /* C_t and P_t of the last pulled frame relative to its path's first: for display only */
+    double diagonal_px;
+};
+
+static L1L2StabResult build(L1L2Stab *s)
+{
+    const L1L2StabConfig *cfg = &s->cfg;
+    const L1L2MotionConfig motion = {
+        .width = cfg->width,
+        .height = cfg->height,
+        .components = s->format->plane[0].components,
+        .luma = s->format->luma,
+        .analysis_size = cfg->analysis_size,
+        .seed = cfg->seed,
+        .log = &cfg->logger,
+    };
+    const L1L2PathConfig path = {
+        .width = cfg->width,
+        .height = cfg->height,
+        .lambda = cfg->lambda,
+        .frame_rate = cfg->frame_rate,
+        .crop_ratio = cfg->crop_ratio,
+        .window = cfg->window,
+        .overlap = cfg->overlap,
+        .join = cfg->join,
+        .log = &cfg->logger,
+    };
+    const L1L2WarpConfig warp = {
+        .format = s->format,
+        .in_width = cfg->width,
+        .in_height = cfg->height,
+        .out_width = s->out_width,
+        .out_height = s->out_height,
+        .chroma_site = cfg->chroma_site,
+        .interpolation = cfg->interpolation,
+        .threads = cfg->threads,
+    };
+    if (!l1l2_ring_init(&s->ring, cfg->window))
+        return L1L2STAB_ERR_NOMEM;
+    L1L2StabResult result = l1l2_motion_create(&s->motion, &motion);
+    if (result == L1L2STAB_OK)
+        result = l1l2_path_create(&s->path, &path);
+    if (result == L1L2STAB_OK)
+        result = l1l2_warp_create(&s->warp, &warp);
+    return result;
+}
+
+L1L2StabResult l1l2stab_create(L1L2Stab **out, const L1L2StabConfig *cfg)
+{
+    L1L2StabConfig resolved;
+    if (!out)
+        return L1L2STAB_ERR_ARGUMENT;
+    *out = NULL;
+    L1L2StabResult result = l1l2_config_resolve(cfg, &resolved);
+    if (result != L1L2STAB_OK)
+        return result;
+    L1L2Stab *s = l1l2_mem_new(1, sizeof *s);
+    if (!s)
+        return L1L2STAB_ERR_NOMEM;
+    s->cfg = resolved;
+    s->format = l1l2_format_info(resolved.format);
+    s->diagonal_px = hypot(resolved.width, resolved.height);
+    l1l2_config_output_size(&resolved, &s->out_width, &s->out_height);
+    result = build(s);
+    if (result != L1L2STAB_OK) {
+        l1l2_log(&resolved.logger, L1L2STAB_LOG_ERROR, "create: %s", l1l2stab_strerror(result));
+        l1l2stab_free(&s);
+        return result;
+    }
+    l1l2stab_reset(s);
+    *out = s;
+    return L1L2STAB_OK;
+}
+
+void l1l2stab_free(L1L2Stab **s)
+{
+    if (!s || !*s)
+        return;
+    l1l2_ring_clear(&(*s)->ring);
+    l1l2_motion_free((*s)->motion);
+    l1l2_path_free((*s)->path);
+    l1l2_warp_free((*s)->warp);
+    l1l2_mem_free(*s);
+    *s = NULL;
+}
+
+void l1l2stab_reset(L1L2Stab *s)
+{
+    if (!s)
+        return;
+    l1l2_ring_drop_all(&s->ring);
+    l1l2_motion_reset(s->motion);
+    l1l2_path_reset(s->path);
+    s->finished = s->decided = false;
+    s->pulled = 0;
+}
+
+static bool planes_given(const L1L2Stab *s, const L1L2StabFrame *frame)
+{
+    for (int i = 0; i < s->format->planes; i++)
+        if (!frame->data[i]) {
+            l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR, "plane %d of a %s frame is NULL", i, s->format->name);
+            return false;
+        }
+    return true;
+}
+
+L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
+{
+    if (!s || !in || !planes_given(s, in))
+        return L1L2STAB_ERR_ARGUMENT;
+    if (s->finished)
+        return L1L2STAB_ERR_STATE;
+    if (s->ring.count == s->ring.capacity)
+        return L1L2STAB_AGAIN;
+    const bool starts_path = (in->flags & L1L2STAB_FRAME_DISCONT) != 0 || s->ring.count + s->pulled == 0;
+    L1L2MotionResult motion;
+    const L1L2StabResult result = l1l2_motion_push(s->motion, in->data[0], in->stride[0], starts_path, &motion);
+    if (result != L1L2STAB_OK) {
+        l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR, "push: %s", l1l2stab_strerror(result));
+        return result;
+    }
+    L1L2Held *held = l1l2_ring_append(&s->ring);
+    *held = (L1L2Held){.frame = *in, .motion = motion};
+    const int64_t start_ns = l1l2_clock_ns();
+    l1l2_path_push(s->path, &motion.F, motion.model == L1L2STAB_MODEL_NONE);
+    l1l2_ring_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
+    return L1L2STAB_OK;
+}
+
+L1L2StabResult l1l2stab_finish(L1L2Stab *s)
+{
+    if (!s)
+        return L1L2STAB_ERR_ARGUMENT;
+    if (!s->finished && s->ring.count > 0) {
+        const int64_t start_ns = l1l2_clock_ns();
+        l1l2_path_finish(s->path);
+        l1l2_ring_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
+    }
+    s->finished = true;
+    return L1L2STAB_OK;
+}
+
+static L1L2StabResult readiness(const L1L2Stab *s)
+{
+    if (s->ring.count > 0 && (s->finished || s->ring.count == s->ring.capacity))
+        return L1L2STAB_OK;
+    return s->finished ? L1L2STAB_EOS : L1L2STAB_AGAIN;
+}
+
+L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque)
+{
+    if (!s)
+        return L1L2STAB_ERR_ARGUMENT;
+    const L1L2StabResult ready = readiness(s);
+    if (ready != L1L2STAB_OK)
+        return ready;
+    const L1L2StabFrame *frame = &l1l2_ring_at(&s->ring, 0)->frame;
+    if (pts)
+        *pts = frame->pts;
+    if (opaque)
+        *opaque = frame->opaque;
+    return L1L2STAB_OK;
+}
+
+/* Output pixel to source pixel: B_t after the zoom that makes the crop window out of the output picture. */
+static L1L2Mat warp_map(const L1L2Stab *s, const L1L2Mat *B)
+{
+    const bool fill = s->cfg.output_size == L1L2STAB_OUTPUT_SIZE_INPUT;
+    const double zoom = fill ? s->cfg.crop_ratio : 1.0;
+    return l1l2_mat_mul(l1l2_mat_rescale(*B, s->diagonal_px), l1l2_mat_diagonal(zoom, zoom));
+}
+
+static void export_px(const L1L2Stab *s, L1L2Mat m, double out[9])
+{
+    m = l1l2_mat_rescale(m, s->diagonal_px);
+    memcpy(out, m.m, sizeof m.m);
+}
+
+static void describe(const L1L2Stab *s, const L1L2Held *held, const L1L2Mat *map, L1L2StabInfo *info)
+{
+    const L1L2PathFrame *f = &s->next;
+    *info = (L1L2StabInfo){
+        .index = s->pulled,
+        .path_index = f->path_index,
+        .lambda = s->cfg.lambda,
+        .crop_ratio = s->cfg.crop_ratio,
+        .tracks = held->motion.tracks,
+        .inliers = held->motion.inliers,
+        .solver_iterations = f->iterations,
+        .model = held->motion.model,
+        .stage_ns = {held->motion.scale_ns, held->motion.track_ns, held->motion.fit_ns, held->solve_ns, 0},
+    };
+    export_px(s, f->F, info->F);
+    export_px(s, f->B, info->B);
+    export_px(s, f->S, info->S);
+    export_px(s, s->camera, info->C);
+    export_px(s, s->smooth, info->P);
+    memcpy(info->warp, map->m, sizeof map->m);
+    if (f->path_index == 0)
+        info->flags |= L1L2STAB_INFO_PATH_START;
+    if (info->model == L1L2STAB_MODEL_IDENTITY || info->model == L1L2STAB_MODEL_PREDICTED)
+        info->flags |= L1L2STAB_INFO_MOTION_LOST;
+    if (f->fallback)
+        info->flags |= L1L2STAB_INFO_PATH_FALLBACK;
+}
+
+/* Takes the oldest frame's path out of path.c, once, and carries C_t and P_t on. */
+static void fetch_path(L1L2Stab *s)
+{
+    if (s->decided)
+        return;
+    s->decided = l1l2_path_pull(s->path, &s->next);
+    s->camera = s->next.path_index == 0 ? l1l2_mat_identity() : l1l2_mat_mul(s->camera, s->next.F);
+    s->smooth = l1l2_mat_mul(s->camera, s->next.B);
+}
+
+L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info)
+{
+    if (!s)
+        return L1L2STAB_ERR_ARGUMENT;
+    const L1L2StabResult ready = readiness(s);
+    if (ready != L1L2STAB_OK)
+        return ready;
+    if (out && !planes_given(s, out))
+        return L1L2STAB_ERR_ARGUMENT;
+    fetch_path(s);
+    const L1L2Held *held = l1l2_ring_at(&s->ring, 0);
+    const L1L2Mat map = warp_map(s, &s->next.B);
+    const int64_t start_ns = l1l2_clock_ns();
+    if (out) {
+        l1l2_warp_render(s->warp, &map, (const uint8_t *const *)held->frame.data, held->frame.stride, out->data,
+                         out->stride);
+        out->pts = held->frame.pts;
+        out->opaque = held->frame.opaque;
+    }
+    if (info) {
+        describe(s, held, &map, info);
+        info->stage_ns[L1L2STAB_STAGE_WARP] = out ? l1l2_clock_ns() - start_ns : 0;
+    }
+    s->decided = false;
+    s->pulled++;
+    l1l2_ring_drop_oldest(&s->ring);
+    return L1L2STAB_OK;
+}

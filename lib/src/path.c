@@ -7,7 +7,7 @@
 #include "crop.h"
 #include "log.h"
 #include "mem.h"
-#include "path_qp.h"
+#include "path_solver.h"
 #include "plan.h"
 
 typedef struct Slot {
@@ -23,9 +23,8 @@ struct L1L2Path {
     int capacity;     /* window + the three frames that a window looks back on */
     int64_t start;    /* frame with which the current path starts */
     int64_t pushed, decided, pulled; /* frames since reset */
-    L1L2WindowProblem *problem;
-    L1L2Qp *qp;
-    double *z, *y;
+    L1L2PathProblem *problem;
+    L1L2PathSolver *solver;
     double (*solution)[L1L2_DIM];
 };
 
@@ -44,14 +43,10 @@ L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg)
     path->crop = l1l2_crop_make(cfg->width, cfg->height, cfg->crop_ratio);
     path->capacity = cfg->window + L1L2_HISTORY + 1;
     path->slots = l1l2_mem_new((size_t)path->capacity, sizeof *path->slots);
-    path->problem = l1l2_window_problem_create(cfg->window);
-    path->qp = l1l2_path_qp_create(cfg->window);
+    path->problem = l1l2_path_problem_create(cfg->window);
+    path->solver = l1l2_path_solver_create(cfg->window, L1L2_SOLVER_BOTH);
     path->solution = l1l2_mem_new((size_t)cfg->window, sizeof *path->solution);
-    if (path->qp) {
-        path->z = l1l2_mem_new((size_t)path->qp->max_cols, sizeof *path->z);
-        path->y = l1l2_mem_new((size_t)path->qp->max_rows, sizeof *path->y);
-    }
-    if (!path->slots || !path->problem || !path->qp || !path->solution || !path->z || !path->y) {
+    if (!path->slots || !path->problem || !path->solver || !path->solution) {
         l1l2_path_free(path);
         return L1L2STAB_ERR_NOMEM;
     }
@@ -65,11 +60,9 @@ void l1l2_path_free(L1L2Path *path)
     if (!path)
         return;
     l1l2_mem_free(path->slots);
-    l1l2_window_problem_free(path->problem);
-    l1l2_qp_free(path->qp);
+    l1l2_path_problem_free(path->problem);
+    l1l2_path_solver_free(path->solver);
     l1l2_mem_free(path->solution);
-    l1l2_mem_free(path->z);
-    l1l2_mem_free(path->y);
     l1l2_mem_free(path);
 }
 
@@ -82,7 +75,7 @@ void l1l2_path_reset(L1L2Path *path)
 /* eq. (1), relative to the window's first frame: C of the frames of the window, and P of the three before it. */
 static void describe_window(L1L2Path *path, const L1L2PlanStep *step)
 {
-    L1L2WindowProblem *p = path->problem;
+    L1L2PathProblem *p = path->problem;
     const int64_t first = path->start + step->first;
     const double rate = path->cfg.frame_rate > 0.0 ? path->cfg.frame_rate : 30.0;
     L1L2Mat camera = l1l2_mat_identity();
@@ -90,9 +83,7 @@ static void describe_window(L1L2Path *path, const L1L2PlanStep *step)
     for (int t = 0; t < step->count; t++) {
         if (t > 0)
             camera = l1l2_mat_mul(camera, slot(path, first + t)->frame.F);
-        l1l2_q_from_mat(&camera, p->camera[t]);
-        p->lambda[t] = path->cfg.lambda * 30.0 / rate;
-        l1l2_crop_rows(&path->crop, &camera, p->G[t], p->lo[t], p->hi[t]);
+        l1l2_path_problem_set(p, t, &camera, path->cfg.lambda * 30.0 / rate, &path->crop);
     }
     p->history = 0;
     if (path->cfg.join != L1L2STAB_JOIN_CONTINUOUS)
@@ -130,29 +121,10 @@ static void hold_course(L1L2Path *path, const L1L2PlanStep *step)
     }
 }
 
-/* Solves the window into path->solution. */
-static bool solve_window(L1L2Path *path, L1L2QpReport *report)
-{
-    L1L2WindowProblem *p = path->problem;
-    l1l2_path_qp_fill(p, path->qp);
-    for (int i = 0; i < path->qp->cols; i++)
-        path->z[i] = i < L1L2_DIM * p->count ? p->camera[i / L1L2_DIM][i % L1L2_DIM] : 0.0;
-    const L1L2StabResult result = l1l2_qp_solve(path->qp, path->z, path->y, report);
-    if (result != L1L2STAB_OK)
-        return false;
-    for (int t = 0; t < p->count; t++)
-        for (int j = 0; j < L1L2_DIM; j++) {
-            path->solution[t][j] = path->z[l1l2_col_q(t, j)];
-            if (!isfinite(path->solution[t][j]))
-                return false;
-        }
-    return true;
-}
-
 /* eq. (2), B_t = C_t^-1 P_t for the frames of the window; what the solver's tolerance leaves outside is pulled in. */
 static void update_transforms(L1L2Path *path, const L1L2PlanStep *step)
 {
-    const L1L2WindowProblem *p = path->problem;
+    const L1L2PathProblem *p = path->problem;
     for (int t = 0; t < step->count; t++) {
         const L1L2Mat camera = l1l2_q_to_mat(p->camera[t]), smooth = l1l2_q_to_mat(path->solution[t]);
         L1L2Mat inverse;
@@ -201,18 +173,17 @@ static void advance(L1L2Path *path, bool ended)
 {
     L1L2PlanStep step;
     while (l1l2_plan_next(&path->plan, path->pushed - path->start, ended, &step)) {
-        L1L2QpReport report = {0};
         describe_window(path, &step);
-        const bool solved = solve_window(path, &report);
-        if (solved)
+        const L1L2SolverReport report = l1l2_path_solver_solve(path->solver, path->problem, path->solution);
+        if (report.converged) {
             update_transforms(path, &step);
-        else
+        } else {
             hold_course(path, &step);
-        if (!solved || !report.converged)
             l1l2_log(path->cfg.log, L1L2STAB_LOG_WARN,
-                     "path: the solver did not arrive in %d iterations (residuals %.2g, %.2g)%s", report.iterations,
-                     report.primal_residual, report.dual_residual, solved ? "" : "; the last course is held");
-        decide(path, &step, !solved || !report.converged, report.iterations);
+                     "path: no solver arrived on a window of %d frames (gap %.2g, dual residual %.2g): the course is held",
+                     step.count, report.gap, report.dual_residual);
+        }
+        decide(path, &step, !report.converged, report.predictor_iterations + report.osqp_iterations);
     }
 }
 

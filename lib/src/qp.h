@@ -32,9 +32,9 @@ typedef struct L1L2QpReport {
 L1L2Qp *l1l2_qp_create(int max_cols, int max_rows, int max_entries);
 void l1l2_qp_free(L1L2Qp *qp);
 
-/* Solve. z (cols) holds the start on entry and the solution on return; y (rows) receives the duals.
+/* Solve. z (cols) and the duals y (rows) hold the start on entry and the solution on return.
  * ERR_NOMEM or ERR_BACKEND where the solver could not run; OK with converged = 0 where it ran and did not arrive.
  * Deterministic: no clock, no randomness; no output, no signal handler. */
-L1L2StabResult l1l2_qp_solve(const L1L2Qp *qp, double *z, double *y, L1L2QpReport *report);
+L1L2StabResult l1l2_qp_solve(const L1L2Qp *qp, int max_iterations, double *z, double *y, L1L2QpReport *report);
 
 #endif

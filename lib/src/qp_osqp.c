@@ -11,7 +11,7 @@
 #include "mem.h"
 #include "qp.h"
 
-static void settle(OSQPSettings *settings)
+static void settle(OSQPSettings *settings, int max_iterations)
 {
     osqp_set_default_settings(settings);
     settings->scaling = 0;      /* path_qp.c scales by hand */
@@ -22,8 +22,8 @@ static void settle(OSQPSettings *settings)
     settings->eps_abs = 1e-6;
     settings->eps_rel = 0.0;
     settings->eps_prim_inf = settings->eps_dual_inf = 1e-12; /* B = identity is feasible, and nothing is unbounded */
-    settings->max_iter = 4000;
-    settings->check_termination = 25;
+    settings->max_iter = max_iterations;
+    settings->check_termination = 1; /* costs less than an iteration, and a good start is accepted at once */
     settings->polish = 0;
     settings->verbose = 0;
     settings->warm_start = 1;
@@ -31,7 +31,7 @@ static void settle(OSQPSettings *settings)
 
 static L1L2StabResult run(OSQPWorkspace *work, const L1L2Qp *qp, double *z, double *y, L1L2QpReport *report)
 {
-    if (osqp_warm_start_x(work, z) != 0 || osqp_solve(work) != 0)
+    if (osqp_warm_start(work, z, y) != 0 || osqp_solve(work) != 0)
         return L1L2STAB_ERR_BACKEND;
     for (int i = 0; i < qp->cols; i++)
         z[i] = work->solution->x[i];
@@ -44,7 +44,7 @@ static L1L2StabResult run(OSQPWorkspace *work, const L1L2Qp *qp, double *z, doub
     return L1L2STAB_OK;
 }
 
-L1L2StabResult l1l2_qp_solve(const L1L2Qp *qp, double *z, double *y, L1L2QpReport *report)
+L1L2StabResult l1l2_qp_solve(const L1L2Qp *qp, int max_iterations, double *z, double *y, L1L2QpReport *report)
 {
     *report = (L1L2QpReport){0};
     L1L2StabResult result = L1L2STAB_ERR_NOMEM;
@@ -59,7 +59,7 @@ L1L2StabResult l1l2_qp_solve(const L1L2Qp *qp, double *z, double *y, L1L2QpRepor
              .nz = -1};
     OSQPData data = {.n = qp->cols, .m = qp->rows, .P = &P, .A = &A, .q = qp->q, .l = qp->lower, .u = qp->upper};
     OSQPSettings settings;
-    settle(&settings);
+    settle(&settings, max_iterations);
     switch (osqp_setup(&work, &data, &settings)) {
     case 0:
         result = run(work, qp, z, y, report);

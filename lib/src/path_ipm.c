@@ -1,0 +1,377 @@
+/* SPDX-License-Identifier: MIT */
+#include "path_ipm.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "mem.h"
+
+#define BAND (L1L2_DIM * (L1L2_HISTORY + 1)) /* the diagonal and 15 below it */
+
+/* Typical distance of a slack from its bound at the start, diagonals: the size of a shake. */
+static const double initial_slack = 1e-2;
+static const double step_fraction = 0.995; /* of the way to the nearest bound */
+/* Aimed at: nearer than this, double precision gives nothing more. Absolute; objectives are about 0.01 to 10. */
+static const double gap_goal = 1e-13, dual_goal = 1e-10;
+/* Enough to be called the optimum: the objective within 1e-8 of it. */
+static const double gap_enough = 1e-9, dual_enough = 1e-7;
+static const int max_iterations = 60;
+
+/* Two inequalities around one linear form: s > 0 their slacks, y > 0 their duals. Side 0 bounds v from above. */
+typedef struct Pair {
+    double s[2], y[2], ds[2], dy[2];
+} Pair;
+
+struct L1L2PathIpm {
+    Pair *term, *crop;      /* by l1l2_term_index(); by 10 t + r */
+    double *band;           /* 4 n x BAND: lower band of the system, then of its Cholesky factor */
+    double *rhs;            /* 4 n: right-hand side, then the step in q */
+    double *gradient;       /* 4 n: stationarity in q at the iterate */
+    double (*q)[L1L2_DIM], (*best_q)[L1L2_DIM];
+    double *slack;
+    double (*term_dual)[2];
+    double (*crop_dual)[L1L2_CROP_ROWS];
+    int terms, crops;       /* pairs in use */
+};
+
+L1L2PathIpm *l1l2_path_ipm_create(int capacity)
+{
+    const size_t n = (size_t)capacity, terms = n * L1L2_ORDERS * L1L2_DIM;
+    L1L2PathIpm *ipm = l1l2_mem_new(1, sizeof *ipm);
+    if (!ipm)
+        return NULL;
+    ipm->term = l1l2_mem_new(terms, sizeof *ipm->term);
+    ipm->crop = l1l2_mem_new(n * L1L2_CROP_ROWS, sizeof *ipm->crop);
+    ipm->band = l1l2_mem_new(n * L1L2_DIM + BAND, BAND * sizeof *ipm->band);
+    ipm->rhs = l1l2_mem_new(n * L1L2_DIM + BAND, sizeof *ipm->rhs);
+    ipm->gradient = l1l2_mem_new(n * L1L2_DIM, sizeof *ipm->gradient);
+    ipm->q = l1l2_mem_new(n, sizeof *ipm->q);
+    ipm->best_q = l1l2_mem_new(n, sizeof *ipm->best_q);
+    ipm->slack = l1l2_mem_new(terms, sizeof *ipm->slack);
+    ipm->term_dual = l1l2_mem_new(terms, sizeof *ipm->term_dual);
+    ipm->crop_dual = l1l2_mem_new(n, sizeof *ipm->crop_dual);
+    if (ipm->term && ipm->crop && ipm->band && ipm->rhs && ipm->gradient && ipm->q && ipm->best_q && ipm->slack && ipm->term_dual &&
+        ipm->crop_dual)
+        return ipm;
+    l1l2_path_ipm_free(ipm);
+    return NULL;
+}
+
+void l1l2_path_ipm_free(L1L2PathIpm *ipm)
+{
+    if (!ipm)
+        return;
+    l1l2_mem_free(ipm->term);
+    l1l2_mem_free(ipm->crop);
+    l1l2_mem_free(ipm->band);
+    l1l2_mem_free(ipm->rhs);
+    l1l2_mem_free(ipm->gradient);
+    l1l2_mem_free(ipm->q);
+    l1l2_mem_free(ipm->best_q);
+    l1l2_mem_free(ipm->slack);
+    l1l2_mem_free(ipm->term_dual);
+    l1l2_mem_free(ipm->crop_dual);
+    l1l2_mem_free(ipm);
+}
+
+/* Strictly feasible on both sides: q = c, e = |D c| + initial_slack; duals half the weight for terms (their sum is the
+ * weight, from here on), and of the same product s y for crop rows. */
+static void start(L1L2PathIpm *ipm, const L1L2PathProblem *p)
+{
+    const int n = p->count;
+    memcpy(ipm->q, p->camera, (size_t)n * sizeof *ipm->q);
+    ipm->terms = l1l2_term_index(L1L2_ORDERS + 1, n, p->history, 0, 0);
+    ipm->crops = L1L2_CROP_ROWS * n;
+    Pair *pair = ipm->term;
+    for (int order = 1; order <= L1L2_ORDERS; order++)
+        for (int t = l1l2_terms_first(order, p->history); t < n; t++)
+            for (int j = 0; j < L1L2_DIM; j++, pair++) {
+                const double v = l1l2_path_difference(p, (const double(*)[L1L2_DIM])ipm->q, order, t, j);
+                pair->s[0] = fabs(v) + initial_slack - v;
+                pair->s[1] = fabs(v) + initial_slack + v;
+                pair->y[0] = pair->y[1] = 0.5 * p->weight[order - 1];
+            }
+    pair = ipm->crop;
+    for (int t = 0; t < n; t++)
+        for (int r = 0; r < L1L2_CROP_ROWS; r++, pair++) {
+            double v = 0.0;
+            for (int j = 0; j < L1L2_DIM; j++)
+                v += p->G[t][r][j] * ipm->q[t][j];
+            pair->s[0] = p->hi[t][r] - v;
+            pair->s[1] = v - p->lo[t][r];
+            for (int side = 0; side < 2; side++)
+                pair->y[side] = 0.1 * initial_slack / pair->s[side];
+        }
+}
+
+/* rhs += sum over pairs of value(pair) * gradient of its form. */
+static void add_gradients(const L1L2PathIpm *ipm, const L1L2PathProblem *p, double (*term_value)(const Pair *),
+                          double (*crop_value)(const Pair *), double *rhs)
+{
+    const Pair *pair = ipm->term;
+    for (int order = 1; order <= L1L2_ORDERS; order++)
+        for (int t = l1l2_terms_first(order, p->history); t < p->count; t++)
+            for (int j = 0; j < L1L2_DIM; j++, pair++) {
+                const double v = term_value(pair);
+                for (int m = 0; m <= order && m <= t; m++)
+                    rhs[L1L2_DIM * (t - m) + j] += v * l1l2_difference[order - 1][m];
+            }
+    pair = ipm->crop;
+    for (int t = 0; t < p->count; t++)
+        for (int r = 0; r < L1L2_CROP_ROWS; r++, pair++) {
+            const double v = crop_value(pair);
+            for (int j = 0; j < L1L2_DIM; j++)
+                rhs[L1L2_DIM * t + j] += v * p->G[t][r][j];
+        }
+}
+
+static double dual_force(const Pair *pair)
+{
+    return pair->y[0] - pair->y[1];
+}
+
+/* Stationarity in q: 2 lambda (q - c) + sum (y0 - y1) grad v, into rhs. Returns its largest component. */
+static double stationarity(const L1L2PathIpm *ipm, const L1L2PathProblem *p, double *rhs)
+{
+    double worst = 0.0;
+    for (int t = 0; t < p->count; t++)
+        for (int j = 0; j < L1L2_DIM; j++)
+            rhs[L1L2_DIM * t + j] = 2.0 * p->lambda[t] * (ipm->q[t][j] - p->camera[t][j]);
+    add_gradients(ipm, p, dual_force, dual_force, rhs);
+    for (int i = 0; i < L1L2_DIM * p->count; i++)
+        worst = fmax(worst, fabs(rhs[i]));
+    return worst;
+}
+
+/* The system in q after all slacks and duals are eliminated. */
+static void assemble(L1L2PathIpm *ipm, const L1L2PathProblem *p)
+{
+    const int n = p->count;
+    memset(ipm->band, 0, (size_t)(L1L2_DIM * n) * BAND * sizeof *ipm->band);
+    for (int t = 0; t < n; t++)
+        for (int j = 0; j < L1L2_DIM; j++)
+            ipm->band[(L1L2_DIM * t + j) * BAND] = 2.0 * p->lambda[t];
+    const Pair *pair = ipm->term;
+    for (int order = 1; order <= L1L2_ORDERS; order++)
+        for (int t = l1l2_terms_first(order, p->history); t < n; t++)
+            for (int j = 0; j < L1L2_DIM; j++, pair++) {
+                const double d0 = pair->y[0] / pair->s[0], d1 = pair->y[1] / pair->s[1];
+                const double weight = 4.0 * d0 * d1 / (d0 + d1);
+                const double *c = l1l2_difference[order - 1];
+                for (int a = 0; a <= order && a <= t; a++)     /* frame t - a, the earlier one, is the column */
+                    for (int b = 0; b <= a; b++)
+                        ipm->band[(L1L2_DIM * (t - a) + j) * BAND + L1L2_DIM * (a - b)] += weight * c[a] * c[b];
+            }
+    pair = ipm->crop;
+    for (int t = 0; t < n; t++)
+        for (int r = 0; r < L1L2_CROP_ROWS; r++, pair++) {
+            const double *g = p->G[t][r];
+            const double weight = pair->y[0] / pair->s[0] + pair->y[1] / pair->s[1];
+            for (int a = 0; a < L1L2_DIM; a++)
+                for (int b = a; b < L1L2_DIM; b++)
+                    ipm->band[(L1L2_DIM * t + a) * BAND + b - a] += weight * g[a] * g[b];
+        }
+}
+
+/* Cholesky in place, L D L': unit L below the diagonal, D on it. False where it is not positive definite. */
+static bool factorize(double *band, int size)
+{
+    for (int i = 0; i < size; i++) {
+        double *column = band + (size_t)i * BAND;
+        const double d = column[0];
+        if (!(d > 0.0) || !isfinite(d))
+            return false;
+        const int reach = size - i < BAND ? size - i : BAND;
+        for (int k = 1; k < reach; k++) {
+            const double l = column[k] / d;
+            double *target = band + (size_t)(i + k) * BAND;
+            for (int m = k; m < reach; m++)
+                target[m - k] -= l * column[m];
+        }
+        for (int k = 1; k < reach; k++)
+            column[k] /= d;
+    }
+    return true;
+}
+
+static void substitute(const double *band, int size, double *x)
+{
+    for (int i = 0; i < size; i++) {
+        const int reach = size - i < BAND ? size - i : BAND;
+        for (int k = 1; k < reach; k++)
+            x[i + k] -= band[(size_t)i * BAND + k] * x[i];
+    }
+    for (int i = size - 1; i >= 0; i--) {
+        const int reach = size - i < BAND ? size - i : BAND;
+        double sum = x[i] / band[(size_t)i * BAND];
+        for (int k = 1; k < reach; k++)
+            sum -= band[(size_t)i * BAND + k] * x[i + k];
+        x[i] = sum;
+    }
+}
+
+/* The target of a side's s y: mu, less what the affine step's own second-order term will add. The affine step itself
+ * aims at 0. dy holds the target between here and the step. */
+static void aim(Pair *pair, int count, double mu, bool corrector)
+{
+    for (int i = 0; i < count; i++)
+        for (int side = 0; side < 2; side++) {
+            const double second = corrector ? pair[i].ds[side] * pair[i].dy[side] : 0.0;
+            pair[i].dy[side] = mu - second - pair[i].s[side] * pair[i].y[side];
+        }
+}
+
+/* What a pair's targets put on the right-hand side. */
+static double term_force(const Pair *pair)
+{
+    const double d0 = pair->y[0] / pair->s[0], d1 = pair->y[1] / pair->s[1];
+    return 2.0 * (d1 * pair->dy[0] / pair->s[0] - d0 * pair->dy[1] / pair->s[1]) / (d0 + d1);
+}
+
+static double crop_force(const Pair *pair)
+{
+    return pair->dy[0] / pair->s[0] - pair->dy[1] / pair->s[1];
+}
+
+/* The steps of a pair's slacks and duals that follow from the step of its form. In this shape nothing cancels where one
+ * side's d is far larger than the other's. */
+static void move_term(Pair *pair, double dv)
+{
+    const double d0 = pair->y[0] / pair->s[0], d1 = pair->y[1] / pair->s[1];
+    const double target = pair->dy[0] / pair->s[0] + pair->dy[1] / pair->s[1];
+    pair->ds[0] = (target - 2.0 * d1 * dv) / (d0 + d1);
+    pair->ds[1] = (target + 2.0 * d0 * dv) / (d0 + d1);
+    for (int side = 0; side < 2; side++)
+        pair->dy[side] = (pair->dy[side] - pair->y[side] * pair->ds[side]) / pair->s[side];
+}
+
+static void move_crop(Pair *pair, double dv)
+{
+    pair->ds[0] = -dv, pair->ds[1] = dv;
+    for (int side = 0; side < 2; side++)
+        pair->dy[side] = (pair->dy[side] - pair->y[side] * pair->ds[side]) / pair->s[side];
+}
+
+/* One direction: targets, right-hand side, solution in rhs, and every pair's step. */
+static void direction(L1L2PathIpm *ipm, const L1L2PathProblem *p, double mu, bool corrector)
+{
+    const int size = L1L2_DIM * p->count;
+    aim(ipm->term, ipm->terms, mu, corrector);
+    aim(ipm->crop, ipm->crops, mu, corrector);
+    double *step = ipm->rhs;
+    memcpy(step, ipm->gradient, (size_t)size * sizeof *step);
+    add_gradients(ipm, p, term_force, crop_force, step);
+    for (int i = 0; i < size; i++)
+        step[i] = -step[i];
+    substitute(ipm->band, size, step);
+
+    Pair *pair = ipm->term;
+    for (int order = 1; order <= L1L2_ORDERS; order++)
+        for (int t = l1l2_terms_first(order, p->history); t < p->count; t++)
+            for (int j = 0; j < L1L2_DIM; j++, pair++) {
+                double dv = 0.0;
+                for (int m = 0; m <= order && m <= t; m++)
+                    dv += l1l2_difference[order - 1][m] * step[L1L2_DIM * (t - m) + j];
+                move_term(pair, dv);
+            }
+    pair = ipm->crop;
+    for (int t = 0; t < p->count; t++)
+        for (int r = 0; r < L1L2_CROP_ROWS; r++, pair++) {
+            double dv = 0.0;
+            for (int j = 0; j < L1L2_DIM; j++)
+                dv += p->G[t][r][j] * step[L1L2_DIM * t + j];
+            move_crop(pair, dv);
+        }
+}
+
+/* How far along the direction all slacks and duals stay >= 0: at most 1. */
+static double reach(const Pair *pair, int count, double alpha)
+{
+    for (int i = 0; i < count; i++)
+        for (int side = 0; side < 2; side++) {
+            if (pair[i].s[side] + alpha * pair[i].ds[side] < 0.0)
+                alpha = -pair[i].s[side] / pair[i].ds[side];
+            if (pair[i].y[side] + alpha * pair[i].dy[side] < 0.0)
+                alpha = -pair[i].y[side] / pair[i].dy[side];
+        }
+    return alpha;
+}
+
+static double gap_after(const Pair *pair, int count, double alpha)
+{
+    double sum = 0.0;
+    for (int i = 0; i < count; i++)
+        for (int side = 0; side < 2; side++)
+            sum += (pair[i].s[side] + alpha * pair[i].ds[side]) * (pair[i].y[side] + alpha * pair[i].dy[side]);
+    return sum;
+}
+
+static void move(Pair *pair, int count, double alpha)
+{
+    for (int i = 0; i < count; i++)
+        for (int side = 0; side < 2; side++) {
+            pair[i].s[side] += alpha * pair[i].ds[side];
+            pair[i].y[side] += alpha * pair[i].dy[side];
+        }
+}
+
+/* Predictor and corrector with one factorization. False where the numbers give out. */
+static bool iterate(L1L2PathIpm *ipm, const L1L2PathProblem *p, double gap)
+{
+    const int sides = 2 * (ipm->terms + ipm->crops);
+    assemble(ipm, p);
+    if (!factorize(ipm->band, L1L2_DIM * p->count))
+        return false;
+    direction(ipm, p, 0.0, false);
+    double alpha = reach(ipm->crop, ipm->crops, reach(ipm->term, ipm->terms, 1.0));
+    const double left = gap_after(ipm->term, ipm->terms, alpha) + gap_after(ipm->crop, ipm->crops, alpha);
+    const double centering = (left / gap) * (left / gap) * (left / gap);
+    direction(ipm, p, centering * gap / sides, true);
+    alpha = reach(ipm->crop, ipm->crops, reach(ipm->term, ipm->terms, 1.0 / step_fraction)) * step_fraction;
+    if (!isfinite(alpha))
+        return false;
+    move(ipm->term, ipm->terms, alpha);
+    move(ipm->crop, ipm->crops, alpha);
+    for (int t = 0; t < p->count; t++)
+        for (int j = 0; j < L1L2_DIM; j++)
+            ipm->q[t][j] += alpha * ipm->rhs[L1L2_DIM * t + j];
+    return true;
+}
+
+/* The iterate as a point; ipm keeps it. */
+static void keep(L1L2PathIpm *ipm, const L1L2PathProblem *p)
+{
+    memcpy(ipm->best_q, ipm->q, (size_t)p->count * sizeof *ipm->q);
+    for (int i = 0; i < ipm->terms; i++) {
+        ipm->slack[i] = 0.5 * (ipm->term[i].s[0] + ipm->term[i].s[1]);
+        ipm->term_dual[i][0] = ipm->term[i].y[0];
+        ipm->term_dual[i][1] = ipm->term[i].y[1];
+    }
+    for (int i = 0; i < ipm->crops; i++)
+        ipm->crop_dual[i / L1L2_CROP_ROWS][i % L1L2_CROP_ROWS] = ipm->crop[i].y[0] - ipm->crop[i].y[1];
+}
+
+L1L2PathIpmReport l1l2_path_ipm_solve(L1L2PathIpm *ipm, const L1L2PathProblem *p, L1L2PathPoint *point)
+{
+    L1L2PathIpmReport best = {.gap = HUGE_VAL, .dual_residual = HUGE_VAL};
+    double best_merit = HUGE_VAL;
+    int since_best = 0;
+    start(ipm, p);
+    keep(ipm, p);
+    for (int iteration = 0; iteration < max_iterations; iteration++) {
+        const double dual_residual = stationarity(ipm, p, ipm->gradient);
+        const double gap = gap_after(ipm->term, ipm->terms, 0.0) + gap_after(ipm->crop, ipm->crops, 0.0);
+        const double merit = fmax(gap / gap_goal, dual_residual / dual_goal);
+        if (merit < best_merit) {
+            best = (L1L2PathIpmReport){gap <= gap_enough && dual_residual <= dual_enough, iteration, gap, dual_residual};
+            best_merit = merit;
+            since_best = 0;
+            keep(ipm, p);
+        }
+        /* Near the limit of double precision iterates can get worse again: the best one is kept. */
+        if (best_merit <= 1.0 || ++since_best > 2 || !iterate(ipm, p, gap))
+            break;
+    }
+    *point = (L1L2PathPoint){ipm->best_q, ipm->slack, ipm->term_dual, ipm->crop_dual};
+    return best;
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The predictor: a primal-dual interior point made for the window problem of path_problem.h.
+ *
+ * Mehrotra's predictor-corrector (SIAM J. Optim. 1992). Every inequality comes in a pair around one linear form v of q:
+ * e - v and e + v of a term's component (v = D^k q), hi - v and v - lo of a crop row (v = G q). The slacks e and the
+ * duals are eliminated by hand: a pair adds one weight to v's outer product, 4 d1 d2 / (d1 + d2) for a term and
+ * d1 + d2 for a crop row, with d = y/s of its two sides. What is left is one positive definite system in q, banded in
+ * frame order with half-bandwidth 15, since a third difference reaches three frames of four components. So an
+ * iteration is O(n), and no memory is allocated after create.
+ *
+ * q = c (all B_t = identity) is strictly feasible; every iterate stays so. What converges is the stationarity in q and
+ * the gap, the sum of all s y, which bounds how far the objective is above its optimum where stationarity holds.
+ */
+#ifndef L1L2_PATH_IPM_H
+#define L1L2_PATH_IPM_H
+
+#include "path_problem.h"
+
+typedef struct L1L2PathIpm L1L2PathIpm;
+
+typedef struct L1L2PathIpmReport {
+    bool converged;       /* gap <= 1e-9 and dual residual <= 1e-7 */
+    int iterations;
+    double gap;           /* sum of s y: the objective's distance from the optimum, in the objective's unit */
+    double dual_residual; /* largest component of the stationarity in q */
+} L1L2PathIpmReport;
+
+/* For windows of up to `capacity` frames. NULL when out of memory. */
+L1L2PathIpm *l1l2_path_ipm_create(int capacity);
+void l1l2_path_ipm_free(L1L2PathIpm *ipm);
+
+/* Solve into *point, whose arrays belong to ipm and last until the next call. The point is finite and strictly within
+ * the crop rows also where it did not converge. Deterministic. */
+L1L2PathIpmReport l1l2_path_ipm_solve(L1L2PathIpm *ipm, const L1L2PathProblem *p, L1L2PathPoint *point);
+
+#endif

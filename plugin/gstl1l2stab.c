@@ -1,0 +1,395 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * SECTION:element-l1l2stab
+ * @title: l1l2stab
+ * @short_description: steadies shaken video while it plays
+ *
+ * l1l2stab follows the motion of the camera, smooths its path, and renders
+ * each frame as the smooth camera would have seen it. It looks at a window of
+ * frames together and therefore holds them back: the latency is #l1l2stab:window
+ * frames. After them, one frame comes out for each frame that comes in, with
+ * its timestamps, flags and metas.
+ *
+ * The method is that of Qu and Song, "Video stabilization with L1-L2
+ * optimization", ICIP 2013.
+ *
+ * Properties that are changed while the stream runs take effect with the next
+ * caps, or when the element is started again. Interlaced video has to be
+ * deinterlaced first.
+ *
+ * ## Example launch lines
+ * |[
+ * gst-launch-1.0 filesrc location=in.mp4 ! decodebin ! l1l2stab ! x264enc ! mp4mux ! filesink location=out.mp4
+ * ]| Steadies a file that has no sound.
+ * |[
+ * gst-launch-1.0 filesrc location=in.mp4 ! decodebin name=in \
+ *   in. ! queue ! l1l2stab ! x264enc ! queue ! mp4mux name=out ! filesink location=out.mp4 \
+ *   in. ! queue max-size-time=0 max-size-bytes=0 max-size-buffers=0 ! audioconvert ! avenc_aac ! out.
+ * ]| The same with sound. The queue of the other branch must have room for the
+ * whole window; a queue's default is one second, and the pipeline would stall.
+ * |[
+ * gst-launch-1.0 v4l2src ! videoconvert ! l1l2stab window=30 ! videoconvert ! autovideosink
+ * ]| A camera, with a delay of one second at 30 frames a second.
+ */
+#include "gstl1l2stab.h"
+
+#include <gst/video/video.h>
+
+#include "gstl1l2staballoc.h"
+#include "gstl1l2stabcaps.h"
+#include "gstl1l2stabglue.h"
+#include "gstl1l2staboutput.h"
+#include "gstl1l2stabsettings.h"
+#include "gstl1l2stabstream.h"
+
+GST_DEBUG_CATEGORY (gst_l1l2_stab_debug);
+#define GST_CAT_DEFAULT gst_l1l2_stab_debug
+
+/* Where the caps do not say: too long a latency does less harm than none. */
+#define ASSUMED_FPS_N 25
+#define ASSUMED_FPS_D 1
+
+struct _GstL1L2Stab
+{
+  GstBaseTransform parent;
+
+  /* Under the object lock. */
+  L1L2StabConfig settings;      /* the properties */
+  GstClockTime latency;
+
+  /* Under the sink pad's stream lock. */
+  GstL1L2StabStream stream;
+};
+
+G_DEFINE_TYPE (GstL1L2Stab, gst_l1l2_stab, GST_TYPE_BASE_TRANSFORM);
+GST_ELEMENT_REGISTER_DEFINE (l1l2stab, "l1l2stab", GST_RANK_NONE,
+    GST_TYPE_L1L2_STAB);
+
+static void
+gst_l1l2_stab_get_settings (GstL1L2Stab * self, L1L2StabConfig * settings)
+{
+  GST_OBJECT_LOCK (self);
+  *settings = self->settings;
+  GST_OBJECT_UNLOCK (self);
+}
+
+/* --- latency --- */
+
+/* Exactly `window` frames. TRUE: it has changed. */
+static gboolean
+gst_l1l2_stab_set_latency (GstL1L2Stab * self, gint window, gint fps_n,
+    gint fps_d)
+{
+  GstClockTime latency;
+  gboolean changed;
+
+  if (fps_n <= 0 || fps_d <= 0) {
+    fps_n = ASSUMED_FPS_N;
+    fps_d = ASSUMED_FPS_D;
+  }
+  latency = gst_util_uint64_scale (window * GST_SECOND, fps_d, fps_n);
+
+  GST_OBJECT_LOCK (self);
+  changed = self->latency != latency;
+  self->latency = latency;
+  GST_OBJECT_UNLOCK (self);
+  return changed;
+}
+
+static gboolean
+gst_l1l2_stab_query_latency (GstL1L2Stab * self, GstQuery * query)
+{
+  GstClockTime least, most, latency;
+  gboolean live;
+
+  if (!gst_pad_peer_query (GST_BASE_TRANSFORM_SINK_PAD (self), query))
+    return FALSE;
+
+  GST_OBJECT_LOCK (self);
+  latency = self->latency;
+  GST_OBJECT_UNLOCK (self);
+
+  gst_query_parse_latency (query, &live, &least, &most);
+  least += latency;
+  if (GST_CLOCK_TIME_IS_VALID (most))
+    most += latency;
+  gst_query_set_latency (query, live, least, most);
+  return TRUE;
+}
+
+/* --- frames and events --- */
+
+/* The base class allocates output only where there is this method. `input` is the frame whose turn it is. */
+static GstFlowReturn
+gst_l1l2_stab_transform (GstBaseTransform * trans, GstBuffer * input,
+    GstBuffer * output)
+{
+  return gst_l1l2_stab_stream_render (&GST_L1L2_STAB (trans)->stream, output);
+}
+
+/* While the window fills: OK and no buffer. DROPPED would mark the first one out as DISCONT. */
+static GstFlowReturn
+gst_l1l2_stab_generate_output (GstBaseTransform * trans, GstBuffer ** output)
+{
+  return gst_l1l2_stab_output_next (trans, &GST_L1L2_STAB (trans)->stream,
+      output);
+}
+
+static GstFlowReturn
+gst_l1l2_stab_submit_input_buffer (GstBaseTransform * trans,
+    gboolean is_discont, GstBuffer * input)
+{
+  GstL1L2Stab *self = GST_L1L2_STAB (trans);
+  GstFlowReturn ret;
+
+  /* The base class renegotiates where it has to, and leaves the frame in queued_buf. */
+  ret = GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)
+      ->submit_input_buffer (trans, is_discont, input);
+  if (ret != GST_FLOW_OK)
+    return ret;
+  input = g_steal_pointer (&trans->queued_buf);
+
+  /* The frame's own flag: is_discont stays set until something is pushed. A frame that could not be pushed before,
+   * for want of a buffer, goes first. */
+  if (GST_BUFFER_IS_DISCONT (input))
+    ret = gst_l1l2_stab_output_drain (trans, &self->stream);
+  else
+    ret = gst_l1l2_stab_output_push_ready (trans, &self->stream);
+  if (ret != GST_FLOW_OK) {
+    gst_buffer_unref (input);
+    return ret;
+  }
+  return gst_l1l2_stab_stream_push (&self->stream, input);
+}
+
+static gboolean
+gst_l1l2_stab_sink_event (GstBaseTransform * trans, GstEvent * event)
+{
+  GstL1L2Stab *self = GST_L1L2_STAB (trans);
+
+  switch (GST_EVENT_TYPE (event)) {
+    case GST_EVENT_STREAM_START:
+    case GST_EVENT_SEGMENT:
+    case GST_EVENT_SEGMENT_DONE:
+    case GST_EVENT_GAP:
+    case GST_EVENT_EOS:
+      gst_l1l2_stab_output_drain (trans, &self->stream);
+      break;
+    case GST_EVENT_CAPS:
+      /* set_caps() drains, if they are not the same as before. */
+      break;
+    case GST_EVENT_FLUSH_STOP:
+      gst_l1l2_stab_output_flush (trans, &self->stream);
+      break;
+    default:
+      if (GST_EVENT_IS_SERIALIZED (event)
+          && !gst_l1l2_stab_stream_is_empty (&self->stream)) {
+        gst_l1l2_stab_stream_add_event (&self->stream, event);
+        return TRUE;
+      }
+      break;
+  }
+  return GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)->sink_event
+      (trans, event);
+}
+
+static gboolean
+gst_l1l2_stab_query (GstBaseTransform * trans, GstPadDirection direction,
+    GstQuery * query)
+{
+  GstL1L2Stab *self = GST_L1L2_STAB (trans);
+
+  if (direction == GST_PAD_SRC && GST_QUERY_TYPE (query) == GST_QUERY_LATENCY)
+    return gst_l1l2_stab_query_latency (self, query);
+  /* Upstream wants its buffers back. */
+  if (direction == GST_PAD_SINK && GST_QUERY_TYPE (query) == GST_QUERY_DRAIN)
+    gst_l1l2_stab_output_drain (trans, &self->stream);
+  return GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)->query (trans,
+      direction, query);
+}
+
+/* --- negotiation --- */
+
+static GstCaps *
+gst_l1l2_stab_transform_caps (GstBaseTransform * trans,
+    GstPadDirection direction, GstCaps * caps, GstCaps * filter)
+{
+  L1L2StabConfig settings;
+
+  gst_l1l2_stab_get_settings (GST_L1L2_STAB (trans), &settings);
+  return gst_l1l2_stab_caps_transform (&settings, direction, caps, filter);
+}
+
+/* Called when the caps of either side have changed, before the new ones go downstream. */
+static gboolean
+gst_l1l2_stab_set_caps (GstBaseTransform * trans, GstCaps * in_caps,
+    GstCaps * out_caps)
+{
+  GstL1L2Stab *self = GST_L1L2_STAB (trans);
+  L1L2StabConfig settings;
+  GstVideoInfo in_info, out_info;
+
+  if (!gst_video_info_from_caps (&in_info, in_caps)
+      || !gst_video_info_from_caps (&out_info, out_caps))
+    return FALSE;
+
+  gst_l1l2_stab_output_drain (trans, &self->stream);
+  gst_l1l2_stab_get_settings (self, &settings);
+  if (!gst_l1l2_stab_stream_open (&self->stream, &settings, &in_info,
+          &out_info))
+    return FALSE;
+  if (gst_l1l2_stab_set_latency (self, settings.window,
+          GST_VIDEO_INFO_FPS_N (&in_info), GST_VIDEO_INFO_FPS_D (&in_info)))
+    gst_element_post_message (GST_ELEMENT_CAST (self),
+        gst_message_new_latency (GST_OBJECT_CAST (self)));
+  return TRUE;
+}
+
+static gboolean
+gst_l1l2_stab_propose_allocation (GstBaseTransform * trans,
+    GstQuery * decide_query, GstQuery * query)
+{
+  GstL1L2Stab *self = GST_L1L2_STAB (trans);
+
+  gst_l1l2_stab_alloc_propose (query, self->stream.window);
+  return TRUE;
+}
+
+static gboolean
+gst_l1l2_stab_decide_allocation (GstBaseTransform * trans, GstQuery * query)
+{
+  gst_l1l2_stab_alloc_decide (query);
+  return GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)
+      ->decide_allocation (trans, query);
+}
+
+/* What says nothing of size, place or memory stays true. So do, nearly, the two that tell of borders. */
+static gboolean
+gst_l1l2_stab_transform_meta (GstBaseTransform * trans, GstBuffer * output,
+    GstMeta * meta, GstBuffer * input)
+{
+  const GType api = meta->info->api;
+  const gchar *const *tags = gst_meta_api_type_get_tags (api);
+
+  return !tags || (g_str_equal (tags[0], GST_META_TAG_VIDEO_STR) && !tags[1])
+      || api == GST_VIDEO_AFD_META_API_TYPE
+      || api == GST_VIDEO_BAR_META_API_TYPE;
+}
+
+/* --- object --- */
+
+/* Settings that contradict each other are told before there is a stream: any frame will do for the check. */
+static gboolean
+gst_l1l2_stab_start (GstBaseTransform * trans)
+{
+  GstL1L2Stab *self = GST_L1L2_STAB (trans);
+  L1L2StabConfig settings;
+  int delay;
+
+  gst_l1l2_stab_get_settings (self, &settings);
+  settings.format = L1L2STAB_FORMAT_GRAY8;
+  settings.width = settings.height = GST_L1L2_STAB_MIN_SIZE;
+  gst_l1l2_stab_glue_logger (&settings.logger, &self->stream.log);
+  delay = l1l2stab_config_delay (&settings);
+  if (delay < 0) {
+    gst_l1l2_stab_glue_flow (GST_ELEMENT_CAST (self), delay, &self->stream.log);
+    return FALSE;
+  }
+
+  /* A dropped input would be a hole in the camera's path. */
+  gst_base_transform_set_qos_enabled (trans, FALSE);
+  gst_l1l2_stab_set_latency (self, settings.window, 0, 1);
+  return TRUE;
+}
+
+static gboolean
+gst_l1l2_stab_stop (GstBaseTransform * trans)
+{
+  gst_l1l2_stab_stream_close (&GST_L1L2_STAB (trans)->stream);
+  return TRUE;
+}
+
+static void
+gst_l1l2_stab_set_property (GObject * object, guint id, const GValue * value,
+    GParamSpec * pspec)
+{
+  GstL1L2Stab *self = GST_L1L2_STAB (object);
+
+  GST_OBJECT_LOCK (self);
+  if (!gst_l1l2_stab_settings_set (&self->settings, id, value))
+    G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_l1l2_stab_get_property (GObject * object, guint id, GValue * value,
+    GParamSpec * pspec)
+{
+  GstL1L2Stab *self = GST_L1L2_STAB (object);
+
+  GST_OBJECT_LOCK (self);
+  if (!gst_l1l2_stab_settings_get (&self->settings, id, value))
+    G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
+  GST_OBJECT_UNLOCK (self);
+}
+
+static void
+gst_l1l2_stab_finalize (GObject * object)
+{
+  gst_l1l2_stab_stream_close (&GST_L1L2_STAB (object)->stream);
+  G_OBJECT_CLASS (gst_l1l2_stab_parent_class)->finalize (object);
+}
+
+static void
+gst_l1l2_stab_class_init (GstL1L2StabClass * klass)
+{
+  GObjectClass *object_class = G_OBJECT_CLASS (klass);
+  GstElementClass *element_class = GST_ELEMENT_CLASS (klass);
+  GstBaseTransformClass *trans_class = GST_BASE_TRANSFORM_CLASS (klass);
+
+  GST_DEBUG_CATEGORY_INIT (gst_l1l2_stab_debug, "l1l2stab", 0,
+      "video stabilizer");
+
+  object_class->set_property = gst_l1l2_stab_set_property;
+  object_class->get_property = gst_l1l2_stab_get_property;
+  object_class->finalize = gst_l1l2_stab_finalize;
+  gst_l1l2_stab_settings_install (object_class);
+
+  gst_l1l2_stab_caps_add_templates (element_class);
+  gst_element_class_set_static_metadata (element_class, "Video stabilizer",
+      "Filter/Effect/Video", "Steadies shaken video, one window of frames late",
+      "The l1l2stab authors");
+
+  trans_class->start = GST_DEBUG_FUNCPTR (gst_l1l2_stab_start);
+  trans_class->stop = GST_DEBUG_FUNCPTR (gst_l1l2_stab_stop);
+  trans_class->transform_caps = GST_DEBUG_FUNCPTR (gst_l1l2_stab_transform_caps);
+  trans_class->set_caps = GST_DEBUG_FUNCPTR (gst_l1l2_stab_set_caps);
+  trans_class->sink_event = GST_DEBUG_FUNCPTR (gst_l1l2_stab_sink_event);
+  trans_class->query = GST_DEBUG_FUNCPTR (gst_l1l2_stab_query);
+  trans_class->propose_allocation =
+      GST_DEBUG_FUNCPTR (gst_l1l2_stab_propose_allocation);
+  trans_class->decide_allocation =
+      GST_DEBUG_FUNCPTR (gst_l1l2_stab_decide_allocation);
+  trans_class->transform_meta = GST_DEBUG_FUNCPTR (gst_l1l2_stab_transform_meta);
+  trans_class->submit_input_buffer =
+      GST_DEBUG_FUNCPTR (gst_l1l2_stab_submit_input_buffer);
+  trans_class->generate_output =
+      GST_DEBUG_FUNCPTR (gst_l1l2_stab_generate_output);
+  trans_class->transform = GST_DEBUG_FUNCPTR (gst_l1l2_stab_transform);
+}
+
+static void
+gst_l1l2_stab_init (GstL1L2Stab * self)
+{
+  GstBaseTransform *trans = GST_BASE_TRANSFORM_CAST (self);
+
+  l1l2stab_config_init (&self->settings, sizeof (self->settings));
+  gst_l1l2_stab_stream_init (&self->stream, GST_ELEMENT_CAST (self));
+
+  gst_base_transform_set_passthrough (trans, FALSE);
+  gst_base_transform_set_in_place (trans, FALSE);
+  /* What is neutral stays neutral: the flag of such a frame is kept. */
+  gst_base_transform_set_gap_aware (trans, TRUE);
+  /* With output-size=crop, downstream's size is not the one to ask upstream for. */
+  gst_base_transform_set_prefer_passthrough (trans, FALSE);
+}

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT */
+#include "gstl1l2staballoc.h"
+
+/* What upstream works with while the window is held: one being filled, one on its way, two to spare. */
+#define SPARE_BUFFERS 4
+
+void
+gst_l1l2_stab_alloc_propose (GstQuery * query, guint window)
+{
+  const guint least = window + SPARE_BUFFERS;
+  GstBufferPool *pool = NULL;
+  GstVideoInfo info;
+  GstCaps *caps;
+  gboolean need_pool;
+
+  gst_query_parse_allocation (query, &caps, &need_pool);
+  if (!caps || !gst_video_info_from_caps (&info, caps))
+    return;
+
+  if (need_pool) {
+    GstStructure *config;
+
+    pool = gst_video_buffer_pool_new ();
+    config = gst_buffer_pool_get_config (pool);
+    gst_buffer_pool_config_set_params (config, caps,
+        GST_VIDEO_INFO_SIZE (&info), least, 0);
+    gst_buffer_pool_config_add_option (config,
+        GST_BUFFER_POOL_OPTION_VIDEO_META);
+    if (!gst_buffer_pool_set_config (pool, config))
+      gst_clear_object (&pool);
+  }
+  /* Without a pool this still says how many buffers upstream's own must have. */
+  gst_query_add_allocation_pool (query, pool, GST_VIDEO_INFO_SIZE (&info),
+      least, 0);
+  gst_query_add_allocation_meta (query, GST_VIDEO_META_API_TYPE, NULL);
+  gst_clear_object (&pool);
+}
+
+void
+gst_l1l2_stab_alloc_decide (GstQuery * query)
+{
+  GstBufferPool *pool = NULL;
+  GstVideoInfo info;
+  GstStructure *config;
+  GstCaps *caps;
+  guint size = 0, least = 0, most = 0;
+  const gboolean offered = gst_query_get_n_allocation_pools (query) > 0;
+
+  gst_query_parse_allocation (query, &caps, NULL);
+  if (!caps || !gst_video_info_from_caps (&info, caps))
+    return;
+
+  if (offered)
+    gst_query_parse_nth_allocation_pool (query, 0, &pool, &size, &least, &most);
+  if (!pool)
+    pool = gst_video_buffer_pool_new ();
+  size = MAX (size, GST_VIDEO_INFO_SIZE (&info));
+
+  /* A pool that pads its frames says so in the meta. */
+  config = gst_buffer_pool_get_config (pool);
+  gst_buffer_pool_config_set_params (config, caps, size, least, most);
+  if (gst_buffer_pool_has_option (pool, GST_BUFFER_POOL_OPTION_VIDEO_META))
+    gst_buffer_pool_config_add_option (config,
+        GST_BUFFER_POOL_OPTION_VIDEO_META);
+  gst_buffer_pool_set_config (pool, config);
+
+  if (offered)
+    gst_query_set_nth_allocation_pool (query, 0, pool, size, least, most);
+  else
+    gst_query_add_allocation_pool (query, pool, size, least, most);
+  gst_object_unref (pool);
+}
+
+static gboolean
+pool_is_small (GstBufferPool * pool, guint window)
+{
+  GstStructure *config = gst_buffer_pool_get_config (pool);
+  guint most = 0;
+
+  gst_buffer_pool_config_get_params (config, NULL, NULL, NULL, &most);
+  gst_structure_free (config);
+  return most > 0 && most < window + SPARE_BUFFERS;
+}
+
+gboolean
+gst_l1l2_stab_alloc_is_scarce (GstBuffer * buffer, guint window)
+{
+  GstParentBufferMeta *parent;
+  guint i;
+
+  /* Memory of a device (DMABuf, a camera's) must go back soon. */
+  for (i = 0; i < gst_buffer_n_memory (buffer); i++) {
+    if (!gst_memory_is_type (gst_buffer_peek_memory (buffer, i),
+            GST_ALLOCATOR_SYSMEM))
+      return TRUE;
+  }
+  /* A buffer that was copied or cut out of another keeps that one from its pool. */
+  while (!buffer->pool
+      && (parent = gst_buffer_get_parent_buffer_meta (buffer)) != NULL)
+    buffer = parent->buffer;
+  return buffer->pool && pool_is_small (buffer->pool, window);
+}
+
+GstBufferPool *
+gst_l1l2_stab_alloc_own_pool (const GstVideoInfo * info)
+{
+  GstBufferPool *pool = gst_video_buffer_pool_new ();
+  GstStructure *config = gst_buffer_pool_get_config (pool);
+  GstCaps *caps = gst_video_info_to_caps (info);
+
+  gst_buffer_pool_config_set_params (config, caps, GST_VIDEO_INFO_SIZE (info),
+      0, 0);
+  gst_caps_unref (caps);
+  if (!gst_buffer_pool_set_config (pool, config)
+      || !gst_buffer_pool_set_active (pool, TRUE))
+    gst_clear_object (&pool);
+  return pool;
+}
+
+GstBuffer *
+gst_l1l2_stab_alloc_copy (GstBufferPool * own_pool, GstBuffer * buffer,
+    const GstVideoInfo * info)
+{
+  GstVideoFrame from, to;
+  GstBuffer *copy = NULL;
+  gboolean copied = FALSE;
+
+  if (gst_buffer_pool_acquire_buffer (own_pool, &copy, NULL) != GST_FLOW_OK)
+    return NULL;
+  if (gst_video_frame_map (&from, info, buffer, GST_MAP_READ)) {
+    if (gst_video_frame_map (&to, info, copy, GST_MAP_WRITE)) {
+      copied = gst_video_frame_copy (&to, &from);
+      gst_video_frame_unmap (&to);
+    }
+    gst_video_frame_unmap (&from);
+  }
+  if (!copied)
+    gst_clear_buffer (&copy);
+  return copy;
+}

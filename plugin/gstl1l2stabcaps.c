@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT */
+#include "gstl1l2stabcaps.h"
+
+#include <gst/video/video.h>
+
+/* The preferred format first. */
+#define FORMATS "{ I420, NV12, YV12, NV21, Y42B, Y444, " \
+    "BGRx, RGBx, BGRA, RGBA, BGR, RGB, GRAY8 }"
+#define SIDE_RANGE(least) \
+    "(int) [ " G_STRINGIFY (least) ", " \
+    G_STRINGIFY (GST_L1L2_STAB_MAX_SIZE) " ]"
+#define RAW_VIDEO(least) \
+    "video/x-raw, format = (string) " FORMATS \
+    ", width = " SIDE_RANGE (least) ", height = " SIDE_RANGE (least) \
+    ", framerate = " GST_VIDEO_FPS_RANGE
+
+/* Caps that lack these two fields are progressive and mono, and intersect. */
+static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
+    GST_PAD_SINK, GST_PAD_ALWAYS,
+    GST_STATIC_CAPS (RAW_VIDEO (GST_L1L2_STAB_MIN_SIZE)
+        ", interlace-mode = (string) progressive"
+        ", multiview-mode = (string) mono"));
+
+/* A crop may be smaller than the least input. The two fields are not here, so as not to be added to caps that came
+ * without. */
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
+    GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (RAW_VIDEO (1)));
+
+void
+gst_l1l2_stab_caps_add_templates (GstElementClass * klass)
+{
+  gst_element_class_add_static_pad_template (klass, &sink_template);
+  gst_element_class_add_static_pad_template (klass, &src_template);
+}
+
+static void
+set_size_range (GstStructure * structure, gint least)
+{
+  gst_structure_set (structure,
+      "width", GST_TYPE_INT_RANGE, least, GST_L1L2_STAB_MAX_SIZE,
+      "height", GST_TYPE_INT_RANGE, least, GST_L1L2_STAB_MAX_SIZE, NULL);
+}
+
+/* Only the output of a known input has a known size: several inputs are rounded to the same output. */
+static void
+transform_size (GstStructure * structure, const L1L2StabConfig * settings,
+    GstPadDirection direction)
+{
+  L1L2StabConfig config = *settings;
+  gint width, height;
+
+  if (direction == GST_PAD_SRC) {
+    set_size_range (structure, GST_L1L2_STAB_MIN_SIZE);
+    return;
+  }
+  config.format = L1L2STAB_FORMAT_GRAY8;        /* any will do: the size is the same */
+  if (gst_structure_get_int (structure, "width", &config.width)
+      && gst_structure_get_int (structure, "height", &config.height)
+      && l1l2stab_config_output_size (&config, &width, &height) == L1L2STAB_OK)
+    gst_structure_set (structure, "width", G_TYPE_INT, width,
+        "height", G_TYPE_INT, height, NULL);
+  else
+    set_size_range (structure, 1);
+}
+
+GstCaps *
+gst_l1l2_stab_caps_transform (const L1L2StabConfig * settings,
+    GstPadDirection direction, GstCaps * caps, GstCaps * filter)
+{
+  GstCaps *other, *filtered;
+  guint i;
+
+  if (settings->output_size == L1L2STAB_OUTPUT_SIZE_CROP) {
+    other = gst_caps_copy (caps);
+    for (i = 0; i < gst_caps_get_size (other); i++)
+      transform_size (gst_caps_get_structure (other, i), settings, direction);
+  } else {
+    other = gst_caps_ref (caps);
+  }
+
+  if (!filter)
+    return other;
+  filtered = gst_caps_intersect_full (filter, other, GST_CAPS_INTERSECT_FIRST);
+  gst_caps_unref (other);
+  return filtered;
+}

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT */
+#include "gstl1l2stabglue.h"
+
+#define GST_CAT_DEFAULT gst_l1l2_stab_debug
+
+/* The library's upper bound; the frame rate only scales lambda, so a faster camera may as well be taken for this. */
+#define MAX_FRAME_RATE 1000.0
+
+static const struct
+{
+  L1L2StabLogLevel ours;
+  GstDebugLevel gst;
+} levels[] = {
+  {L1L2STAB_LOG_ERROR, GST_LEVEL_ERROR},
+  {L1L2STAB_LOG_WARN, GST_LEVEL_WARNING},
+  {L1L2STAB_LOG_INFO, GST_LEVEL_INFO},
+  {L1L2STAB_LOG_DEBUG, GST_LEVEL_DEBUG},
+  {L1L2STAB_LOG_TRACE, GST_LEVEL_LOG},
+};
+
+static void
+write_message (void *cookie, L1L2StabLogLevel level, const char *message)
+{
+  GstL1L2StabLog *log = cookie;
+  guint i;
+
+  if (level == L1L2STAB_LOG_ERROR) {
+    g_free (log->reason);
+    log->reason = g_strdup (message);
+  }
+  for (i = 0; i < G_N_ELEMENTS (levels); i++) {
+    if (levels[i].ours == level)
+      GST_CAT_LEVEL_LOG (GST_CAT_DEFAULT, levels[i].gst, log->object, "%s",
+          message);
+  }
+}
+
+void
+gst_l1l2_stab_glue_logger (L1L2StabLogger * logger, GstL1L2StabLog * log)
+{
+  GstDebugLevel threshold = gst_debug_category_get_threshold (GST_CAT_DEFAULT);
+  guint i;
+
+  logger->write = write_message;
+  logger->cookie = log;
+  logger->max_level = L1L2STAB_LOG_ERROR;       /* for the reason, always */
+  for (i = 0; i < G_N_ELEMENTS (levels); i++) {
+    if (levels[i].gst <= threshold)
+      logger->max_level = levels[i].ours;
+  }
+}
+
+static L1L2StabFormat
+format_from_video (GstVideoFormat format)
+{
+  switch (format) {
+    case GST_VIDEO_FORMAT_GRAY8:
+      return L1L2STAB_FORMAT_GRAY8;
+    case GST_VIDEO_FORMAT_I420:
+      return L1L2STAB_FORMAT_I420;
+    case GST_VIDEO_FORMAT_YV12:
+      return L1L2STAB_FORMAT_YV12;
+    case GST_VIDEO_FORMAT_NV12:
+      return L1L2STAB_FORMAT_NV12;
+    case GST_VIDEO_FORMAT_NV21:
+      return L1L2STAB_FORMAT_NV21;
+    case GST_VIDEO_FORMAT_Y42B:
+      return L1L2STAB_FORMAT_Y42B;
+    case GST_VIDEO_FORMAT_Y444:
+      return L1L2STAB_FORMAT_Y444;
+    case GST_VIDEO_FORMAT_BGRx:
+      return L1L2STAB_FORMAT_BGRX;
+    case GST_VIDEO_FORMAT_RGBx:
+      return L1L2STAB_FORMAT_RGBX;
+    case GST_VIDEO_FORMAT_BGRA:
+      return L1L2STAB_FORMAT_BGRA;
+    case GST_VIDEO_FORMAT_RGBA:
+      return L1L2STAB_FORMAT_RGBA;
+    case GST_VIDEO_FORMAT_BGR:
+      return L1L2STAB_FORMAT_BGR;
+    case GST_VIDEO_FORMAT_RGB:
+      return L1L2STAB_FORMAT_RGB;
+    default:
+      return L1L2STAB_FORMAT_UNKNOWN;
+  }
+}
+
+static L1L2StabChromaSite
+chroma_site_from_video (GstVideoChromaSite site)
+{
+  if (site == GST_VIDEO_CHROMA_SITE_UNKNOWN)
+    return L1L2STAB_CHROMA_SITE_LEFT;
+  if ((site & GST_VIDEO_CHROMA_SITE_H_COSITED) == 0)
+    return L1L2STAB_CHROMA_SITE_CENTER;
+  if (site & GST_VIDEO_CHROMA_SITE_V_COSITED)
+    return L1L2STAB_CHROMA_SITE_TOP_LEFT;
+  return L1L2STAB_CHROMA_SITE_LEFT;
+}
+
+void
+gst_l1l2_stab_glue_config (L1L2StabConfig * config, const GstVideoInfo * info)
+{
+  config->format = format_from_video (GST_VIDEO_INFO_FORMAT (info));
+  config->width = GST_VIDEO_INFO_WIDTH (info);
+  config->height = GST_VIDEO_INFO_HEIGHT (info);
+  config->chroma_site =
+      chroma_site_from_video (GST_VIDEO_INFO_CHROMA_SITE (info));
+  config->frame_rate = 0;
+  if (GST_VIDEO_INFO_FPS_N (info) > 0) {
+    gdouble rate;
+
+    gst_util_fraction_to_double (GST_VIDEO_INFO_FPS_N (info),
+        GST_VIDEO_INFO_FPS_D (info), &rate);
+    config->frame_rate = MIN (rate, MAX_FRAME_RATE);
+  }
+}
+
+void
+gst_l1l2_stab_glue_planes (L1L2StabFrame * frame, const GstVideoFrame * video)
+{
+  guint i;
+
+  for (i = 0; i < GST_VIDEO_FRAME_N_PLANES (video); i++) {
+    frame->data[i] = GST_VIDEO_FRAME_PLANE_DATA (video, i);
+    frame->stride[i] = GST_VIDEO_FRAME_PLANE_STRIDE (video, i);
+  }
+}
+
+GstFlowReturn
+gst_l1l2_stab_glue_flow (GstElement * element, L1L2StabResult result,
+    const GstL1L2StabLog * log)
+{
+  const gchar *what = l1l2stab_strerror (result);
+  const gchar *reason = log->reason ? log->reason : what;
+
+  switch (result) {
+    case L1L2STAB_OK:
+    case L1L2STAB_AGAIN:
+    case L1L2STAB_EOS:
+      return GST_FLOW_OK;
+    case L1L2STAB_ERR_ARGUMENT:
+    case L1L2STAB_ERR_UNSUPPORTED:
+      GST_ELEMENT_ERROR (element, LIBRARY, SETTINGS, ("%s", reason),
+          ("%s", what));
+      return GST_FLOW_ERROR;
+    case L1L2STAB_ERR_NOMEM:
+      GST_ELEMENT_ERROR (element, RESOURCE, NO_SPACE_LEFT, ("%s", what),
+          ("%s", reason));
+      return GST_FLOW_ERROR;
+    case L1L2STAB_ERR_STATE:
+    case L1L2STAB_ERR_BACKEND:
+      break;
+  }
+  GST_ELEMENT_ERROR (element, LIBRARY, FAILED, ("%s", what), ("%s", reason));
+  return GST_FLOW_ERROR;
+}

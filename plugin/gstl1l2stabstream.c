@@ -1,0 +1,256 @@
+/* SPDX-License-Identifier: MIT */
+#include "gstl1l2stabstream.h"
+
+#include "gstl1l2staballoc.h"
+
+#define GST_CAT_DEFAULT gst_l1l2_stab_debug
+
+/* A frame that the library holds. */
+typedef struct
+{
+  GstBuffer *buffer;            /* timestamps, flags, metas; the pixels too, unless they were copied */
+  GstVideoFrame pixels;         /* mapped for reading; has a reference of its own */
+} HeldFrame;
+
+/* An event that must not overtake the frames that came before it. */
+typedef struct
+{
+  GstEvent *event;
+  guint64 n_before;             /* frames that came in before it */
+} WaitingEvent;
+
+void
+gst_l1l2_stab_stream_init (GstL1L2StabStream * stream, GstElement * element)
+{
+  memset (stream, 0, sizeof (*stream));
+  stream->element = element;
+  stream->log.object = GST_OBJECT_CAST (element);
+  g_queue_init (&stream->events);
+}
+
+static GstFlowReturn
+flow (GstL1L2StabStream * stream, L1L2StabResult result)
+{
+  return gst_l1l2_stab_glue_flow (stream->element, result, &stream->log);
+}
+
+static void
+drop_own_pool (GstL1L2StabStream * stream)
+{
+  if (stream->own_pool)
+    gst_buffer_pool_set_active (stream->own_pool, FALSE);
+  gst_clear_object (&stream->own_pool);
+}
+
+gboolean
+gst_l1l2_stab_stream_open (GstL1L2StabStream * stream,
+    const L1L2StabConfig * settings, const GstVideoInfo * in_info,
+    const GstVideoInfo * out_info)
+{
+  L1L2StabConfig config = *settings;
+
+  gst_l1l2_stab_stream_reset (stream);
+  l1l2stab_free (&stream->stab);
+  drop_own_pool (stream);
+
+  stream->in_info = *in_info;
+  stream->out_info = *out_info;
+  stream->window = settings->window;
+
+  gst_l1l2_stab_glue_config (&config, in_info);
+  gst_l1l2_stab_glue_logger (&config.logger, &stream->log);
+  g_clear_pointer (&stream->log.reason, g_free);
+  return flow (stream, l1l2stab_create (&stream->stab, &config)) == GST_FLOW_OK;
+}
+
+void
+gst_l1l2_stab_stream_close (GstL1L2StabStream * stream)
+{
+  GstEvent *event;
+
+  gst_l1l2_stab_stream_reset (stream);
+  while ((event = gst_l1l2_stab_stream_due_event (stream)) != NULL)
+    gst_event_unref (event);
+  l1l2stab_free (&stream->stab);
+  drop_own_pool (stream);
+  g_clear_pointer (&stream->log.reason, g_free);
+}
+
+gboolean
+gst_l1l2_stab_stream_is_empty (const GstL1L2StabStream * stream)
+{
+  return stream->n_in == stream->n_out;
+}
+
+static void
+held_frame_free (gpointer data)
+{
+  HeldFrame *held = data;
+
+  if (held->pixels.buffer)
+    gst_video_frame_unmap (&held->pixels);
+  gst_buffer_unref (held->buffer);
+  g_free (held);
+}
+
+/* Metas that belong to the memory, or keep another buffer's, do not go with a copy. */
+static gboolean
+drop_memory_meta (GstBuffer * buffer, GstMeta ** meta, gpointer user_data)
+{
+  const GType api = (*meta)->info->api;
+
+  if (gst_meta_api_type_has_tag (api,
+          g_quark_from_static_string (GST_META_TAG_MEMORY_STR))
+      || gst_meta_api_type_has_tag (api,
+          g_quark_from_static_string (GST_META_TAG_MEMORY_REFERENCE_STR)))
+    *meta = NULL;
+  return TRUE;
+}
+
+/* The pixels are copied, and upstream's buffer goes back at once; what else it carries stays with an empty one. */
+static GstBuffer *
+copy_scarce (GstL1L2StabStream * stream, HeldFrame * held)
+{
+  GstBuffer *input = held->buffer;
+  GstBuffer *copy;
+
+  if (!stream->own_pool)
+    stream->own_pool = gst_l1l2_stab_alloc_own_pool (&stream->in_info);
+  if (!stream->own_pool)
+    return NULL;
+  copy = gst_l1l2_stab_alloc_copy (stream->own_pool, input, &stream->in_info);
+
+  held->buffer = gst_buffer_new ();
+  gst_buffer_copy_into (held->buffer, input, GST_BUFFER_COPY_METADATA, 0, -1);
+  gst_buffer_foreach_meta (held->buffer, drop_memory_meta, NULL);
+  gst_buffer_unref (input);
+  return copy;
+}
+
+/* NULL: the buffer cannot be read as a frame. */
+static HeldFrame *
+held_frame_new (GstL1L2StabStream * stream, GstBuffer * buffer)
+{
+  HeldFrame *held = g_new0 (HeldFrame, 1);
+  GstBuffer *pixels;
+  gboolean mapped = FALSE;
+
+  held->buffer = buffer;
+  if (gst_l1l2_stab_alloc_is_scarce (buffer, stream->window))
+    pixels = copy_scarce (stream, held);
+  else
+    pixels = gst_buffer_ref (buffer);
+
+  if (pixels) {
+    mapped = gst_video_frame_map (&held->pixels, &stream->in_info, pixels,
+        GST_MAP_READ);
+    gst_buffer_unref (pixels);
+  }
+  if (!mapped) {
+    held->pixels.buffer = NULL;
+    g_clear_pointer (&held, held_frame_free);
+  }
+  return held;
+}
+
+GstFlowReturn
+gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer)
+{
+  L1L2StabFrame frame = { 0 };
+  L1L2StabResult result;
+  HeldFrame *held = held_frame_new (stream, buffer);
+
+  if (!held) {
+    GST_ELEMENT_ERROR (stream->element, STREAM, FORMAT,
+        ("A buffer does not hold a frame of its caps."), (NULL));
+    return GST_FLOW_ERROR;
+  }
+
+  gst_l1l2_stab_glue_planes (&frame, &held->pixels);
+  frame.pts = (gint64) GST_BUFFER_PTS (held->buffer);
+  frame.opaque = held;
+  frame.release = held_frame_free;
+
+  result = l1l2stab_push (stream->stab, &frame);
+  if (result == L1L2STAB_OK) {
+    stream->n_in++;
+    return GST_FLOW_OK;
+  }
+  held_frame_free (held);
+  return flow (stream, result == L1L2STAB_AGAIN ? L1L2STAB_ERR_STATE : result);
+}
+
+GstFlowReturn
+gst_l1l2_stab_stream_peek (GstL1L2StabStream * stream, GstBuffer ** next)
+{
+  void *held = NULL;
+  L1L2StabResult result;
+
+  *next = NULL;
+  if (!stream->stab)
+    return GST_FLOW_OK;
+  result = l1l2stab_peek (stream->stab, NULL, &held);
+  if (result == L1L2STAB_OK)
+    *next = ((HeldFrame *) held)->buffer;
+  return flow (stream, result);
+}
+
+GstFlowReturn
+gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output)
+{
+  L1L2StabFrame frame = { 0 };
+  L1L2StabResult result;
+  GstVideoFrame pixels;
+
+  if (!gst_video_frame_map (&pixels, &stream->out_info, output, GST_MAP_WRITE)) {
+    GST_ELEMENT_ERROR (stream->element, RESOURCE, WRITE,
+        ("An output buffer does not hold a frame of its caps."), (NULL));
+    return GST_FLOW_ERROR;
+  }
+  gst_l1l2_stab_glue_planes (&frame, &pixels);
+  result = l1l2stab_pull (stream->stab, &frame, NULL);
+  gst_video_frame_unmap (&pixels);
+
+  if (result == L1L2STAB_OK)
+    stream->n_out++;
+  return flow (stream, result);
+}
+
+GstFlowReturn
+gst_l1l2_stab_stream_finish (GstL1L2StabStream * stream)
+{
+  if (!stream->stab)
+    return GST_FLOW_OK;
+  return flow (stream, l1l2stab_finish (stream->stab));
+}
+
+void
+gst_l1l2_stab_stream_reset (GstL1L2StabStream * stream)
+{
+  if (stream->stab)
+    l1l2stab_reset (stream->stab);
+  stream->n_out = stream->n_in;
+}
+
+void
+gst_l1l2_stab_stream_add_event (GstL1L2StabStream * stream, GstEvent * event)
+{
+  WaitingEvent *waiting = g_new (WaitingEvent, 1);
+
+  waiting->event = event;
+  waiting->n_before = stream->n_in;
+  g_queue_push_tail (&stream->events, waiting);
+}
+
+GstEvent *
+gst_l1l2_stab_stream_due_event (GstL1L2StabStream * stream)
+{
+  WaitingEvent *waiting = g_queue_peek_head (&stream->events);
+  GstEvent *event;
+
+  if (!waiting || waiting->n_before > stream->n_out)
+    return NULL;
+  event = waiting->event;
+  g_free (g_queue_pop_head (&stream->events));
+  return event;
+}

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/* What is between the pads: the library's instance, the frames that it holds, and the events that came in among them.
+ * No pads here and no base class. The sink pad's stream lock guards it all. */
+#ifndef GST_L1L2_STAB_STREAM_H
+#define GST_L1L2_STAB_STREAM_H
+
+#include <gst/gst.h>
+#include <gst/video/video.h>
+
+#include "gstl1l2stabglue.h"
+
+G_BEGIN_DECLS
+
+typedef struct
+{
+  GstElement *element;          /* posts the errors; not owned */
+  GstL1L2StabLog log;
+  L1L2Stab *stab;               /* NULL: closed */
+  GstVideoInfo in_info;
+  GstVideoInfo out_info;
+  guint window;                 /* frames */
+  GstBufferPool *own_pool;      /* made when upstream's buffers are scarce */
+  guint64 n_in;                 /* frames that came in ... */
+  guint64 n_out;                /* ... and of these, went out or were dropped */
+  GQueue events;                /* that wait for frames, oldest first */
+} GstL1L2StabStream;
+
+void gst_l1l2_stab_stream_init (GstL1L2StabStream * stream,
+    GstElement * element);
+
+/* (Re)opens for frames of these caps. Frames that are held are dropped: drain first. FALSE: an error was posted. */
+gboolean gst_l1l2_stab_stream_open (GstL1L2StabStream * stream,
+    const L1L2StabConfig * settings, const GstVideoInfo * in_info,
+    const GstVideoInfo * out_info);
+
+/* Drops everything; fine on a closed stream. */
+void gst_l1l2_stab_stream_close (GstL1L2StabStream * stream);
+
+gboolean gst_l1l2_stab_stream_is_empty (const GstL1L2StabStream * stream);
+
+/* Takes `buffer`. */
+GstFlowReturn gst_l1l2_stab_stream_push (GstL1L2StabStream * stream,
+    GstBuffer * buffer);
+
+/* *next: the buffer whose timestamps, flags and metas belong to the next frame out; owned by the stream until
+ * render() or reset(). NULL: none is ready. */
+GstFlowReturn gst_l1l2_stab_stream_peek (GstL1L2StabStream * stream,
+    GstBuffer ** next);
+
+/* Renders the frame that peek() shows into `output`, and lets go of it. */
+GstFlowReturn gst_l1l2_stab_stream_render (GstL1L2StabStream * stream,
+    GstBuffer * output);
+
+/* From now on peek() shows all that is held. Only reset() allows to push again. */
+GstFlowReturn gst_l1l2_stab_stream_finish (GstL1L2StabStream * stream);
+
+/* Drops the frames and forgets the path. The events that waited for them are due. */
+void gst_l1l2_stab_stream_reset (GstL1L2StabStream * stream);
+
+/* Takes `event`, to be given back when the frames that are held now are out. */
+void gst_l1l2_stab_stream_add_event (GstL1L2StabStream * stream,
+    GstEvent * event);
+
+/* The next event whose turn it is, or NULL. */
+GstEvent *gst_l1l2_stab_stream_due_event (GstL1L2StabStream * stream);
+
+G_END_DECLS
+
+#endif

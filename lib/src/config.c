@@ -8,10 +8,10 @@
 #include "log.h"
 
 /* The overlap that 0 stands for. blend: the paper's. continuous: |DP| pulls the open end of a window flat for some 40
- * frames; with K = 90 of N = 150 that does not reach frames that are given out (docs/path.md has the table). */
+ * frames; with K = 100 of N = 150 that does not reach frames that are given out (docs/path.md has the table). */
 static int default_overlap(L1L2StabJoin join, int window)
 {
-    const int overlap = join == L1L2STAB_JOIN_BLEND ? window / 5 : window * 3 / 5;
+    const int overlap = join == L1L2STAB_JOIN_BLEND ? window / 5 : window * 2 / 3;
     const int most = join == L1L2STAB_JOIN_BLEND ? window / 2 : window - 1;
     const int wanted = overlap < 3 ? 3 : overlap;
     return wanted < most ? wanted : most;

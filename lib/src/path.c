@@ -180,8 +180,8 @@ static void advance(L1L2Path *path, bool ended)
         } else {
             hold_course(path, &step);
             l1l2_log(path->cfg.log, L1L2STAB_LOG_WARN,
-                     "path: no solver arrived on a window of %d frames (gap %.2g, dual residual %.2g): the course is held",
-                     step.count, report.gap, report.dual_residual);
+                     "path: no solver arrived on a window of %d frames (objective within %.2g): the course is held",
+                     step.count, report.bound);
         }
         decide(path, &step, !report.converged, report.predictor_iterations + report.osqp_iterations);
     }

@@ -11,15 +11,15 @@
 /* Typical distance of a slack from its bound at the start, diagonals: the size of a shake. */
 static const double initial_slack = 1e-2;
 static const double step_fraction = 0.995; /* of the way to the nearest bound */
-/* Aimed at: nearer than this, double precision gives nothing more. Absolute; objectives are about 0.01 to 10. */
-static const double gap_goal = 1e-13, dual_goal = 1e-10;
-/* Enough to be called the optimum: the objective within 1e-8 of it. */
-static const double gap_enough = 1e-9, dual_enough = 1e-7;
+/* Of the bound on the objective's distance from the optimum, absolute; objectives are about 0.01 to 10. */
+static const double bound_goal = 1e-13;  /* nearer than this, double precision gives nothing more */
+static const double bound_enough = 1e-9; /* to be called the optimum */
 static const int max_iterations = 60;
 
 /* Two inequalities around one linear form: s > 0 their slacks, y > 0 their duals. Side 0 bounds v from above. */
 typedef struct Pair {
     double s[2], y[2], ds[2], dy[2];
+    double dv; /* step of v */
 } Pair;
 
 struct L1L2PathIpm {
@@ -27,6 +27,7 @@ struct L1L2PathIpm {
     double *band;           /* 4 n x BAND: lower band of the system, then of its Cholesky factor */
     double *rhs;            /* 4 n: right-hand side, then the step in q */
     double *gradient;       /* 4 n: stationarity in q at the iterate */
+    double *diagonal;       /* 4 n: of the system before its factorization */
     double (*q)[L1L2_DIM], (*best_q)[L1L2_DIM];
     double *slack;
     double (*term_dual)[2];
@@ -45,12 +46,13 @@ L1L2PathIpm *l1l2_path_ipm_create(int capacity)
     ipm->band = l1l2_mem_new(n * L1L2_DIM + BAND, BAND * sizeof *ipm->band);
     ipm->rhs = l1l2_mem_new(n * L1L2_DIM + BAND, sizeof *ipm->rhs);
     ipm->gradient = l1l2_mem_new(n * L1L2_DIM, sizeof *ipm->gradient);
+    ipm->diagonal = l1l2_mem_new(n * L1L2_DIM, sizeof *ipm->diagonal);
     ipm->q = l1l2_mem_new(n, sizeof *ipm->q);
     ipm->best_q = l1l2_mem_new(n, sizeof *ipm->best_q);
     ipm->slack = l1l2_mem_new(terms, sizeof *ipm->slack);
     ipm->term_dual = l1l2_mem_new(terms, sizeof *ipm->term_dual);
     ipm->crop_dual = l1l2_mem_new(n, sizeof *ipm->crop_dual);
-    if (ipm->term && ipm->crop && ipm->band && ipm->rhs && ipm->gradient && ipm->q && ipm->best_q && ipm->slack && ipm->term_dual &&
+    if (ipm->term && ipm->crop && ipm->band && ipm->rhs && ipm->gradient && ipm->diagonal && ipm->q && ipm->best_q && ipm->slack && ipm->term_dual &&
         ipm->crop_dual)
         return ipm;
     l1l2_path_ipm_free(ipm);
@@ -66,6 +68,7 @@ void l1l2_path_ipm_free(L1L2PathIpm *ipm)
     l1l2_mem_free(ipm->band);
     l1l2_mem_free(ipm->rhs);
     l1l2_mem_free(ipm->gradient);
+    l1l2_mem_free(ipm->diagonal);
     l1l2_mem_free(ipm->q);
     l1l2_mem_free(ipm->best_q);
     l1l2_mem_free(ipm->slack);
@@ -130,17 +133,22 @@ static double dual_force(const Pair *pair)
     return pair->y[0] - pair->y[1];
 }
 
-/* Stationarity in q: 2 lambda (q - c) + sum (y0 - y1) grad v, into rhs. Returns its largest component. */
-static double stationarity(const L1L2PathIpm *ipm, const L1L2PathProblem *p, double *rhs)
+/* Stationarity in q: 2 lambda (q - c) + sum (y0 - y1) grad v, into r. Returns what r adds to the gap in a bound on the
+ * objective's distance from the optimum: the Lagrangian is strongly convex by the L2 term, so r moves its minimum by at
+ * most |r_t|^2 / (4 lambda_t); and since the crop rows keep every component within less than a diagonal of anywhere
+ * else that is feasible, by at most |r|_1. */
+static double stationarity(const L1L2PathIpm *ipm, const L1L2PathProblem *p, double *r)
 {
-    double worst = 0.0;
     for (int t = 0; t < p->count; t++)
         for (int j = 0; j < L1L2_DIM; j++)
-            rhs[L1L2_DIM * t + j] = 2.0 * p->lambda[t] * (ipm->q[t][j] - p->camera[t][j]);
-    add_gradients(ipm, p, dual_force, dual_force, rhs);
-    for (int i = 0; i < L1L2_DIM * p->count; i++)
-        worst = fmax(worst, fabs(rhs[i]));
-    return worst;
+            r[L1L2_DIM * t + j] = 2.0 * p->lambda[t] * (ipm->q[t][j] - p->camera[t][j]);
+    add_gradients(ipm, p, dual_force, dual_force, r);
+    double bound = 0.0;
+    for (int i = 0; i < L1L2_DIM * p->count; i++) {
+        const double linear = fabs(r[i]), lambda = p->lambda[i / L1L2_DIM];
+        bound += linear < 4.0 * lambda ? linear * linear / (4.0 * lambda) : linear;
+    }
+    return bound;
 }
 
 /* The system in q after all slacks and duals are eliminated. */
@@ -173,14 +181,16 @@ static void assemble(L1L2PathIpm *ipm, const L1L2PathProblem *p)
         }
 }
 
-/* Cholesky in place, L D L': unit L below the diagonal, D on it. False where it is not positive definite. */
-static bool factorize(double *band, int size)
+/* Cholesky in place, L D L': unit L below the diagonal, D on it. Where rounding has eaten a pivot (lambda 0 and no
+ * active crop row: the path may be anywhere) its component is not moved. False where the numbers give out. */
+static bool factorize(double *band, const double *diagonal, int size)
 {
     for (int i = 0; i < size; i++) {
         double *column = band + (size_t)i * BAND;
-        const double d = column[0];
-        if (!(d > 0.0) || !isfinite(d))
+        const double d = column[0] > 1e-14 * diagonal[i] ? column[0] : 1e100;
+        if (!isfinite(column[0]))
             return false;
+        column[0] = d;
         const int reach = size - i < BAND ? size - i : BAND;
         for (int k = 1; k < reach; k++) {
             const double l = column[k] / d;
@@ -235,53 +245,61 @@ static double crop_force(const Pair *pair)
 
 /* The steps of a pair's slacks and duals that follow from the step of its form. In this shape nothing cancels where one
  * side's d is far larger than the other's. */
-static void move_term(Pair *pair, double dv)
+static void move_term(Pair *pair)
 {
     const double d0 = pair->y[0] / pair->s[0], d1 = pair->y[1] / pair->s[1];
     const double target = pair->dy[0] / pair->s[0] + pair->dy[1] / pair->s[1];
-    pair->ds[0] = (target - 2.0 * d1 * dv) / (d0 + d1);
-    pair->ds[1] = (target + 2.0 * d0 * dv) / (d0 + d1);
+    pair->ds[0] = (target - 2.0 * d1 * pair->dv) / (d0 + d1);
+    pair->ds[1] = (target + 2.0 * d0 * pair->dv) / (d0 + d1);
     for (int side = 0; side < 2; side++)
         pair->dy[side] = (pair->dy[side] - pair->y[side] * pair->ds[side]) / pair->s[side];
 }
 
-static void move_crop(Pair *pair, double dv)
+static void move_crop(Pair *pair)
 {
-    pair->ds[0] = -dv, pair->ds[1] = dv;
+    pair->ds[0] = -pair->dv, pair->ds[1] = pair->dv;
     for (int side = 0; side < 2; side++)
         pair->dy[side] = (pair->dy[side] - pair->y[side] * pair->ds[side]) / pair->s[side];
 }
 
-/* One direction: targets, right-hand side, solution in rhs, and every pair's step. */
+/* The step of every pair's form, from the step in q. */
+static void step_forms(L1L2PathIpm *ipm, const L1L2PathProblem *p)
+{
+    const double *step = ipm->rhs;
+    Pair *pair = ipm->term;
+    for (int order = 1; order <= L1L2_ORDERS; order++)
+        for (int t = l1l2_terms_first(order, p->history); t < p->count; t++)
+            for (int j = 0; j < L1L2_DIM; j++, pair++) {
+                pair->dv = 0.0;
+                for (int m = 0; m <= order && m <= t; m++)
+                    pair->dv += l1l2_difference[order - 1][m] * step[L1L2_DIM * (t - m) + j];
+            }
+    pair = ipm->crop;
+    for (int t = 0; t < p->count; t++)
+        for (int r = 0; r < L1L2_CROP_ROWS; r++, pair++) {
+            pair->dv = 0.0;
+            for (int j = 0; j < L1L2_DIM; j++)
+                pair->dv += p->G[t][r][j] * step[L1L2_DIM * t + j];
+        }
+}
+
+/* One direction: targets, right-hand side, solution, and every pair's step. */
 static void direction(L1L2PathIpm *ipm, const L1L2PathProblem *p, double mu, bool corrector)
 {
     const int size = L1L2_DIM * p->count;
+    double *step = ipm->rhs;
     aim(ipm->term, ipm->terms, mu, corrector);
     aim(ipm->crop, ipm->crops, mu, corrector);
-    double *step = ipm->rhs;
     memcpy(step, ipm->gradient, (size_t)size * sizeof *step);
     add_gradients(ipm, p, term_force, crop_force, step);
     for (int i = 0; i < size; i++)
         step[i] = -step[i];
     substitute(ipm->band, size, step);
-
-    Pair *pair = ipm->term;
-    for (int order = 1; order <= L1L2_ORDERS; order++)
-        for (int t = l1l2_terms_first(order, p->history); t < p->count; t++)
-            for (int j = 0; j < L1L2_DIM; j++, pair++) {
-                double dv = 0.0;
-                for (int m = 0; m <= order && m <= t; m++)
-                    dv += l1l2_difference[order - 1][m] * step[L1L2_DIM * (t - m) + j];
-                move_term(pair, dv);
-            }
-    pair = ipm->crop;
-    for (int t = 0; t < p->count; t++)
-        for (int r = 0; r < L1L2_CROP_ROWS; r++, pair++) {
-            double dv = 0.0;
-            for (int j = 0; j < L1L2_DIM; j++)
-                dv += p->G[t][r][j] * step[L1L2_DIM * t + j];
-            move_crop(pair, dv);
-        }
+    step_forms(ipm, p);
+    for (int i = 0; i < ipm->terms; i++)
+        move_term(&ipm->term[i]);
+    for (int i = 0; i < ipm->crops; i++)
+        move_crop(&ipm->crop[i]);
 }
 
 /* How far along the direction all slacks and duals stay >= 0: at most 1. */
@@ -320,7 +338,9 @@ static bool iterate(L1L2PathIpm *ipm, const L1L2PathProblem *p, double gap)
 {
     const int sides = 2 * (ipm->terms + ipm->crops);
     assemble(ipm, p);
-    if (!factorize(ipm->band, L1L2_DIM * p->count))
+    for (int i = 0; i < L1L2_DIM * p->count; i++)
+        ipm->diagonal[i] = ipm->band[(size_t)i * BAND];
+    if (!factorize(ipm->band, ipm->diagonal, L1L2_DIM * p->count))
         return false;
     direction(ipm, p, 0.0, false);
     double alpha = reach(ipm->crop, ipm->crops, reach(ipm->term, ipm->terms, 1.0));
@@ -353,23 +373,20 @@ static void keep(L1L2PathIpm *ipm, const L1L2PathProblem *p)
 
 L1L2PathIpmReport l1l2_path_ipm_solve(L1L2PathIpm *ipm, const L1L2PathProblem *p, L1L2PathPoint *point)
 {
-    L1L2PathIpmReport best = {.gap = HUGE_VAL, .dual_residual = HUGE_VAL};
-    double best_merit = HUGE_VAL;
+    L1L2PathIpmReport best = {.bound = HUGE_VAL};
     int since_best = 0;
     start(ipm, p);
     keep(ipm, p);
     for (int iteration = 0; iteration < max_iterations; iteration++) {
-        const double dual_residual = stationarity(ipm, p, ipm->gradient);
         const double gap = gap_after(ipm->term, ipm->terms, 0.0) + gap_after(ipm->crop, ipm->crops, 0.0);
-        const double merit = fmax(gap / gap_goal, dual_residual / dual_goal);
-        if (merit < best_merit) {
-            best = (L1L2PathIpmReport){gap <= gap_enough && dual_residual <= dual_enough, iteration, gap, dual_residual};
-            best_merit = merit;
+        const double bound = gap + stationarity(ipm, p, ipm->gradient);
+        if (bound < best.bound) {
+            best = (L1L2PathIpmReport){bound <= bound_enough, iteration, bound};
             since_best = 0;
             keep(ipm, p);
         }
         /* Near the limit of double precision iterates can get worse again: the best one is kept. */
-        if (best_merit <= 1.0 || ++since_best > 2 || !iterate(ipm, p, gap))
+        if (bound <= bound_goal || ++since_best > 2 || !iterate(ipm, p, gap))
             break;
     }
     *point = (L1L2PathPoint){ipm->best_q, ipm->slack, ipm->term_dual, ipm->crop_dual};

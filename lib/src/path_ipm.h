@@ -10,7 +10,7 @@
  * iteration is O(n), and no memory is allocated after create.
  *
  * q = c (all B_t = identity) is strictly feasible; every iterate stays so. What converges is the stationarity in q and
- * the gap, the sum of all s y, which bounds how far the objective is above its optimum where stationarity holds.
+ * the gap, the sum of all s y; together they bound how far the objective is above its optimum: a certificate.
  */
 #ifndef L1L2_PATH_IPM_H
 #define L1L2_PATH_IPM_H
@@ -20,10 +20,9 @@
 typedef struct L1L2PathIpm L1L2PathIpm;
 
 typedef struct L1L2PathIpmReport {
-    bool converged;       /* gap <= 1e-9 and dual residual <= 1e-7 */
+    bool converged; /* bound <= 1e-9 */
     int iterations;
-    double gap;           /* sum of s y: the objective's distance from the optimum, in the objective's unit */
-    double dual_residual; /* largest component of the stationarity in q */
+    double bound;   /* the objective is at most this far above its optimum */
 } L1L2PathIpmReport;
 
 /* For windows of up to `capacity` frames. NULL when out of memory. */

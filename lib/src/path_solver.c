@@ -57,13 +57,14 @@ static bool run_osqp(L1L2PathSolver *s, const L1L2PathProblem *p, int iterations
     if (l1l2_qp_solve(s->qp, iterations, s->z, s->y, &qp) != L1L2STAB_OK)
         return false;
     report->osqp_iterations = qp.iterations;
+    report->osqp_primal_residual = qp.primal_residual;
+    report->osqp_dual_residual = qp.dual_residual;
     bool finite = true;
     for (int i = 0; i < L1L2_DIM * p->count; i++)
         finite = finite && isfinite(s->z[i]);
     if (take && finite) {
         for (int i = 0; i < L1L2_DIM * p->count; i++)
             q[i / L1L2_DIM][i % L1L2_DIM] = s->z[i];
-        report->dual_residual = qp.dual_residual;
         report->decided_by = L1L2_SOLVER_OSQP;
     }
     return finite && qp.converged;
@@ -79,7 +80,7 @@ static void start_from_camera(L1L2PathSolver *s, const L1L2PathProblem *p)
 
 L1L2SolverReport l1l2_path_solver_solve(L1L2PathSolver *s, const L1L2PathProblem *p, double (*q)[L1L2_DIM])
 {
-    L1L2SolverReport report = {.decided_by = L1L2_SOLVER_PREDICTOR, .gap = HUGE_VAL};
+    L1L2SolverReport report = {.decided_by = L1L2_SOLVER_PREDICTOR, .bound = HUGE_VAL};
     L1L2PathPoint point;
     memcpy(q, p->camera, (size_t)p->count * sizeof *q);
     if (s->choice != L1L2_SOLVER_OSQP) {
@@ -87,8 +88,7 @@ L1L2SolverReport l1l2_path_solver_solve(L1L2PathSolver *s, const L1L2PathProblem
         memcpy(q, point.q, (size_t)p->count * sizeof *q);
         report.converged = ipm.converged;
         report.predictor_iterations = ipm.iterations;
-        report.gap = ipm.gap;
-        report.dual_residual = ipm.dual_residual;
+        report.bound = ipm.bound;
     }
     if (s->choice != L1L2_SOLVER_PREDICTOR || !report.converged) {
         const bool trusted = report.converged;
@@ -102,6 +102,6 @@ L1L2SolverReport l1l2_path_solver_solve(L1L2PathSolver *s, const L1L2PathProblem
             report.decided_by = L1L2_SOLVER_BOTH;
         report.converged = trusted || agreed;
     }
-    report.primal_residual = l1l2_path_excess(p, (const double(*)[L1L2_DIM])q);
+    report.excess = l1l2_path_excess(p, (const double(*)[L1L2_DIM])q);
     return report;
 }

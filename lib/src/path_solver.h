@@ -25,9 +25,9 @@ typedef struct L1L2SolverReport {
     bool converged;
     L1L2SolverChoice decided_by; /* BOTH where the two agree */
     int predictor_iterations, osqp_iterations;
-    double gap;                  /* predictor: how far the objective may be above the optimum */
-    double dual_residual;        /* of the deciding solver, in its own scaling */
-    double primal_residual;      /* the largest violation of a crop row, diagonals; <= 0 where all hold */
+    double bound;                /* predictor: the objective is at most this far above its optimum */
+    double osqp_primal_residual, osqp_dual_residual; /* infinity norms, in the program's scaling */
+    double excess;               /* the largest violation of a crop row, diagonals; <= 0 where all hold */
 } L1L2SolverReport;
 
 /* For windows of up to `capacity` frames. NULL when out of memory. */

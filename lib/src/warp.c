@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The frame's planes, cut into bands of rows that threads take in any order. A band goes run by run: the generator
+ * (warp_coords.h) writes positions, the sample type (warp_u8.h) with its kernel (warp_kernel.h) renders them.
+ */
+#include "warp.h"
+
+#include "mem.h"
+#include "pool.h"
+#include "warp_coords.h"
+#include "warp_kernel.h"
+#include "warp_u8.h"
+
+enum {
+    BAND_ROWS = 16, /* enough work to be worth a thread's while, few enough to share a frame out evenly */
+    RUN_SAMPLES = 256 /* the positions of a run stay in the first-level cache */
+};
+
+struct L1L2Warp {
+    L1L2WarpConfig cfg;
+    L1L2WarpKernel kernel;
+    L1L2Pool *pool;
+};
+
+/* One plane of one frame. */
+typedef struct PlaneJob {
+    L1L2WarpAffine affine;
+    L1L2WarpPlane src;
+    uint8_t *dst;
+    ptrdiff_t dst_stride;
+    int width, height, components; /* of dst, samples */
+    L1L2WarpU8Run *run;
+    int bands;
+} PlaneJob;
+
+typedef struct FrameJob {
+    const L1L2WarpKernel *kernel;
+    PlaneJob plane[3];
+} FrameJob;
+
+L1L2StabResult l1l2_warp_create(L1L2Warp **out, const L1L2WarpConfig *cfg)
+{
+    *out = NULL;
+    if (!cfg->format || cfg->in_width <= 0 || cfg->in_height <= 0 || cfg->out_width <= 0 || cfg->out_height <= 0)
+        return L1L2STAB_ERR_ARGUMENT;
+    L1L2Warp *w = l1l2_mem_new(1, sizeof *w);
+    if (!w)
+        return L1L2STAB_ERR_NOMEM;
+    w->cfg = *cfg;
+    l1l2_warp_kernel_init(&w->kernel, cfg->interpolation);
+    w->pool = l1l2_pool_create(cfg->threads);
+    if (!w->pool) {
+        l1l2_warp_free(w);
+        return L1L2STAB_ERR_NOMEM;
+    }
+    *out = w;
+    return L1L2STAB_OK;
+}
+
+void l1l2_warp_free(L1L2Warp *w)
+{
+    if (!w)
+        return;
+    l1l2_pool_free(w->pool);
+    l1l2_mem_free(w);
+}
+
+static void render_band(const PlaneJob *job, const L1L2WarpKernel *kernel, int band)
+{
+    int32_t x[RUN_SAMPLES], y[RUN_SAMPLES];
+    const int first = band * BAND_ROWS;
+    const int end = first + BAND_ROWS < job->height ? first + BAND_ROWS : job->height;
+    for (int v = first; v < end; v++) {
+        uint8_t *row = job->dst + v * job->dst_stride;
+        for (int u = 0; u < job->width; u += RUN_SAMPLES) {
+            const int count = job->width - u < RUN_SAMPLES ? job->width - u : RUN_SAMPLES;
+            l1l2_warp_affine_run(&job->affine, u, v, count, x, y);
+            job->run(&job->src, kernel, x, y, count, row + u * job->components);
+        }
+    }
+}
+
+/* Bands are counted through all planes. */
+static void render_part(void *context, int index)
+{
+    const FrameJob *job = context;
+    int plane = 0;
+    for (; index >= job->plane[plane].bands; plane++)
+        index -= job->plane[plane].bands;
+    render_band(&job->plane[plane], job->kernel, index);
+}
+
+void l1l2_warp_render(L1L2Warp *w, const L1L2Mat *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
+                      uint8_t *const dst[4], const ptrdiff_t dst_stride[4])
+{
+    const L1L2WarpConfig *cfg = &w->cfg;
+    const L1L2FormatInfo *format = cfg->format;
+    FrameJob job = {.kernel = &w->kernel,};
+    int bands = 0;
+    for (int i = 0; i < format->planes; i++) {
+        const int sub_x = format->plane[i].log2_sub_x, sub_y = format->plane[i].log2_sub_y;
+        const L1L2WarpGrid from = l1l2_warp_grid(format, i, cfg->chroma_site, cfg->in_width, cfg->in_height);
+        const L1L2WarpGrid to = l1l2_warp_grid(format, i, cfg->chroma_site, cfg->out_width, cfg->out_height);
+        PlaneJob *plane = &job.plane[i];
+        *plane = (PlaneJob){
+            .affine = l1l2_warp_affine(map, &to, &from),
+            .src = {src[i], src_stride[i], l1l2_plane_size(cfg->in_width, sub_x),
+                    l1l2_plane_size(cfg->in_height, sub_y)},
+            .dst = dst[i],
+            .dst_stride = dst_stride[i],
+            .width = l1l2_plane_size(cfg->out_width, sub_x),
+            .height = l1l2_plane_size(cfg->out_height, sub_y),
+            .components = format->plane[i].components,
+            .run = l1l2_warp_u8_run(w->kernel.taps, format->plane[i].components),
+        };
+        plane->bands = (plane->height + BAND_ROWS - 1) / BAND_ROWS;
+        bands += plane->bands;
+    }
+    l1l2_pool_run(w->pool, bands, render_part, &job);
+}

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The warp's coordinate generators: from a map of frames to source positions for runs of output samples of one plane.
+ *
+ * Two coordinates are at play. In the frame: luma pixels in [0, W] x [0, H], pixel centres at half-integers. In a plane:
+ * sample j is at j. Sample j lies at frame position `first + step * j`, by axis: L1L2WarpGrid.
+ *
+ * A generator writes positions for a kernel to read: fixed point, L1L2_WARP_PHASE_BITS fractional bits. Another kind of
+ * map (a homography, a map for each row) is another generator with the same output.
+ */
+#ifndef L1L2_WARP_COORDS_H
+#define L1L2_WARP_COORDS_H
+
+#include <stdint.h>
+
+#include "format.h"
+#include "geom.h"
+
+enum {
+    L1L2_WARP_PHASE_BITS = 10, /* 1/1024 px: what rounding a position costs stays well under one grey level */
+    L1L2_WARP_PHASES = 1 << L1L2_WARP_PHASE_BITS
+};
+
+/* Where a plane's samples lie in the frame. */
+typedef struct L1L2WarpGrid {
+    double size_x, size_y;   /* of the frame, pixels */
+    double first_x, first_y; /* frame position of sample 0 */
+    double step_x, step_y;   /* pixels from sample to sample: 1 or 2 */
+} L1L2WarpGrid;
+
+/* plane: 0 .. format->planes - 1; width and height: the frame's, pixels. */
+L1L2WarpGrid l1l2_warp_grid(const L1L2FormatInfo *format, int plane, L1L2StabChromaSite site, int width, int height);
+
+/* Output sample (u, v) reads the source plane at x[0] u + x[1] v + x[2], likewise y. */
+typedef struct L1L2WarpAffine {
+    double x[3], y[3];
+} L1L2WarpAffine;
+
+/* map: output pixel -> source pixel, both with the origin at their frame's centre. */
+L1L2WarpAffine l1l2_warp_affine(const L1L2Mat *map, const L1L2WarpGrid *dst, const L1L2WarpGrid *src);
+
+/* Positions of output samples (u .. u + count - 1, v). They do not depend on where a run begins. Far outside they
+ * saturate, at some 500000 samples from the plane's corner. */
+void l1l2_warp_affine_run(const L1L2WarpAffine *affine, int u, int v, int count, int32_t *x, int32_t *y);
+
+#endif

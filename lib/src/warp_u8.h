@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The warp's sample type of 8 bits: weighs the taps around given positions and writes what comes out.
+ *
+ * Fixed point, rows first. A row of taps sums to 8 + 14 bits and is cut to 6 fractional bits: with the overshoot of any
+ * kernel here, below 1.3, that fits 16 bits. The column's sum has 20 fractional bits and is rounded once. Every
+ * implementation does exactly this, so all give the same bytes.
+ */
+#ifndef L1L2_WARP_U8_H
+#define L1L2_WARP_U8_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "warp_kernel.h"
+
+enum {
+    L1L2_WARP_U8_ROW_SHIFT = L1L2_WARP_WEIGHT_BITS - 6,
+    L1L2_WARP_U8_SHIFT = L1L2_WARP_WEIGHT_BITS + 6,
+    /* One half of the result's unit, and one half of what a row's cut takes off: its mean. Flat stays flat. */
+    L1L2_WARP_U8_ROUND = (1 << (L1L2_WARP_U8_SHIFT - 1)) + (1 << (L1L2_WARP_WEIGHT_BITS - 1))
+};
+
+typedef struct L1L2WarpPlane {
+    const uint8_t *data;
+    ptrdiff_t stride;
+    int width, height; /* samples */
+} L1L2WarpPlane;
+
+/* Writes count samples of all their components to dst from positions x[], y[] (fixed point of warp_coords.h); taps
+ * beyond the plane repeat its edge. */
+typedef void L1L2WarpU8Run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
+                           int count, uint8_t *dst);
+
+/* For a kernel of 2, 4 or 6 taps and 1..4 interleaved components. */
+L1L2WarpU8Run *l1l2_warp_u8_run(int taps, int components);
+
+#endif

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Informational: what the warp takes, in ms a frame, by size, format, kernel and threads, beside a memcpy of the frame.
+ * Best and median of some frames; every frame has another map, as a stabilizer's have: 0.9 of the frame zoomed to fill
+ * it, turned by up to 1 degree.
+ */
+#define _POSIX_C_SOURCE 199309L /* clock_gettime */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "clock.h"
+#include "rng.h"
+#include "warp.h"
+
+enum { FRAMES = 40, PLANES_MAX = 3 };
+
+typedef struct Picture {
+    uint8_t *data[4];
+    ptrdiff_t stride[4];
+    size_t size[4];
+} Picture;
+
+static Picture make_picture(const L1L2FormatInfo *format, int width, int height)
+{
+    Picture p = {{NULL}, {0}, {0}};
+    L1L2Rng rng = l1l2_rng_seeded(1);
+    for (int i = 0; i < format->planes; i++) {
+        p.stride[i] = (ptrdiff_t)l1l2_plane_size(width, format->plane[i].log2_sub_x) * format->plane[i].components;
+        p.size[i] = (size_t)p.stride[i] * (size_t)l1l2_plane_size(height, format->plane[i].log2_sub_y);
+        p.data[i] = malloc(p.size[i]);
+        if (!p.data[i])
+            exit(EXIT_FAILURE);
+        for (size_t k = 0; k < p.size[i]; k++)
+            p.data[i][k] = (uint8_t)l1l2_rng_next(&rng);
+    }
+    return p;
+}
+
+static void free_picture(Picture *p)
+{
+    for (int i = 0; i < PLANES_MAX; i++)
+        free(p->data[i]);
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void print_times(const char *what, double *ms)
+{
+    qsort(ms, FRAMES, sizeof *ms, compare);
+    printf("  %-28s best %7.3f   median %7.3f\n", what, ms[0], ms[FRAMES / 2]);
+}
+
+static void bench_copy(const L1L2FormatInfo *format, const Picture *src, Picture *dst)
+{
+    double ms[FRAMES];
+    for (int t = 0; t < FRAMES; t++) {
+        const int64_t start = l1l2_clock_ns();
+        for (int i = 0; i < format->planes; i++)
+            memcpy(dst->data[i], src->data[i], src->size[i]);
+        ms[t] = (double)(l1l2_clock_ns() - start) * 1e-6;
+    }
+    print_times("memcpy", ms);
+}
+
+static void bench_kernel(const L1L2WarpConfig *cfg, const char *name, const Picture *src, Picture *dst)
+{
+    L1L2Warp *warp;
+    if (l1l2_warp_create(&warp, cfg) != L1L2STAB_OK)
+        exit(EXIT_FAILURE);
+    double ms[FRAMES];
+    for (int t = -2; t < FRAMES; t++) {
+        const double angle = 0.0174 * sin(0.7 * t), zoom = 0.9;
+        const L1L2Mat map = l1l2_mat_similarity(zoom * cos(angle), zoom * sin(angle), 5.0 * sin(t), 5.0 * cos(t));
+        const int64_t start = l1l2_clock_ns();
+        l1l2_warp_render(warp, &map, (const uint8_t *const *)src->data, src->stride, dst->data, dst->stride);
+        if (t >= 0)
+            ms[t] = (double)(l1l2_clock_ns() - start) * 1e-6;
+    }
+    char what[64];
+    snprintf(what, sizeof what, "%s, %d thread%s", name, cfg->threads, cfg->threads > 1 ? "s" : "");
+    print_times(what, ms);
+    l1l2_warp_free(warp);
+}
+
+static void bench(L1L2StabFormat id, int width, int height)
+{
+    static const char *const kernels[] = {"bilinear", "bicubic", "lanczos"};
+    const L1L2FormatInfo *format = l1l2_format_info(id);
+    Picture src = make_picture(format, width, height), dst = make_picture(format, width, height);
+    printf("%s %dx%d, ms a frame\n", format->name, width, height);
+    bench_copy(format, &src, &dst);
+    for (int k = 0; k < 3; k++)
+        for (int threads = 1; threads <= 2; threads++) {
+            const L1L2WarpConfig cfg = {.format = format, .in_width = width, .in_height = height, .out_width = width,
+                                        .out_height = height, .interpolation = (L1L2StabInterpolation)k,
+                                        .threads = threads};
+            bench_kernel(&cfg, kernels[k], &src, &dst);
+        }
+    free_picture(&src);
+    free_picture(&dst);
+}
+
+int main(void)
+{
+    bench(L1L2STAB_FORMAT_I420, 1280, 720);
+    bench(L1L2STAB_FORMAT_I420, 1920, 1080);
+    bench(L1L2STAB_FORMAT_NV12, 1280, 720);
+    bench(L1L2STAB_FORMAT_BGR, 1280, 720);
+    bench(L1L2STAB_FORMAT_BGRX, 1280, 720);
+    return EXIT_SUCCESS;
+}

@@ -1,0 +1,328 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * How much does a video shake? Decodes with GStreamer and lets the library measure the motion, without rendering.
+ *
+ *     measure-shake [--picture=OUT.png] A [B]
+ *
+ *     uridecodebin ! videoconvert ! videoflip ! appsink -> l1l2stab_push(), l1l2stab_pull(s, NULL, &info)
+ *
+ * The shake is the root mean square of the corner path's second difference: how far a corner of the frame jumps away,
+ * on average, from where the two frames before it would have put it. In pixels of a picture scaled to 640 wide. A
+ * steady pan does not count, and nothing is measured across a cut.
+ *
+ * The picture is a slit scan: time goes to the right, and each column is the middle column of one frame. What stands
+ * still or is panned steadily is smooth, and shake shows as ripples. A is above, B below.
+ */
+#include <gst/app/gstappsink.h>
+#include <gst/app/gstappsrc.h>
+#include <gst/gst.h>
+#include <gst/video/video.h>
+#include <l1l2stab/l1l2stab.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define EXIT_USAGE 2
+#define REFERENCE_WIDTH 640.0
+#define WINDOW 16 /* frames: the measured motion does not depend on it, the memory does */
+#define PICTURE_WIDTH 900 /* pixels, about: short clips get several columns a frame */
+#define PICTURE_FRAMES 1800
+#define SEPARATOR 6 /* pixels */
+
+#define DECODER \
+    "uridecodebin name=source caps=video/x-raw(ANY) expose-all-streams=false ! videoconvert ! " \
+    "videoflip video-direction=auto ! video/x-raw, format=GRAY8 ! appsink name=frames sync=false max-buffers=4"
+#define PNG_WRITER "appsrc name=picture ! pngenc snapshot=true ! filesink name=file"
+
+typedef struct Corners {
+    double x[4], y[4]; /* pixels */
+} Corners;
+
+/* One video and what was found out about it. */
+typedef struct Video {
+    const char *path;
+    L1L2Stab *stab;
+    GstVideoInfo info;
+    GByteArray *slits; /* the middle columns, one frame after the other */
+    int frames;
+    Corners velocity;  /* of the frame before */
+    gboolean moving;   /* velocity is set */
+    double sum;        /* of the squared accelerations, over corners and frames */
+    int count;
+} Video;
+
+/* One line on stderr. */
+static gboolean G_GNUC_PRINTF(2, 3) fail(const char *path, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    char *text = g_strdup_vprintf(format, args);
+    va_end(args);
+    g_printerr("measure-shake: %s: %s\n", path, text);
+    g_free(text);
+    return FALSE;
+}
+
+/* The error that stopped a pipeline, else the fallback. To be freed. */
+static char *pipeline_error(GstElement *pipeline, const char *fallback)
+{
+    GstBus *bus = gst_element_get_bus(pipeline);
+    GstMessage *message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+    char *text = NULL;
+    if (message) {
+        GError *error = NULL;
+        gst_message_parse_error(message, &error, NULL);
+        text = g_strdup(error->message);
+        g_clear_error(&error);
+        gst_message_unref(message);
+    }
+    gst_object_unref(bus);
+    return text ? text : g_strdup(fallback);
+}
+
+/* ---- the shake ---- */
+
+static Corners corner_velocity(const double F[9], double width, double height)
+{
+    Corners v;
+    for (int i = 0; i < 4; i++) {
+        const double x = (i & 1 ? 0.5 : -0.5) * width, y = (i & 2 ? 0.5 : -0.5) * height;
+        const double w = F[6] * x + F[7] * y + F[8];
+        v.x[i] = (F[0] * x + F[1] * y + F[2]) / w - x;
+        v.y[i] = (F[3] * x + F[4] * y + F[5]) / w - y;
+    }
+    return v;
+}
+
+static void add_motion(Video *video, const L1L2StabInfo *info)
+{
+    if (info->flags & (L1L2STAB_INFO_PATH_START | L1L2STAB_INFO_MOTION_LOST)) {
+        video->moving = FALSE;
+        return;
+    }
+    const Corners v = corner_velocity(info->F, video->info.width, video->info.height);
+    for (int i = 0; i < 4 && video->moving; i++) {
+        const double ax = v.x[i] - video->velocity.x[i], ay = v.y[i] - video->velocity.y[i];
+        video->sum += ax * ax + ay * ay;
+        video->count++;
+    }
+    video->velocity = v;
+    video->moving = TRUE;
+}
+
+static double shake_of(const Video *video)
+{
+    return video->count ? sqrt(video->sum / video->count) * REFERENCE_WIDTH / video->info.width : 0.0;
+}
+
+/* ---- from GStreamer to the library ---- */
+
+static void add_slit(Video *video, const GstVideoFrame *frame)
+{
+    const guint8 *column = (const guint8 *)GST_VIDEO_FRAME_PLANE_DATA(frame, 0) + GST_VIDEO_FRAME_WIDTH(frame) / 2;
+    for (int y = 0; y < GST_VIDEO_FRAME_HEIGHT(frame); y++)
+        g_byte_array_append(video->slits, column + (gssize)y * GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0), 1);
+}
+
+/* A frame stays mapped, and so the decoder's, until the library has done with it: nothing is copied. */
+static void release_frame(void *opaque)
+{
+    GstVideoFrame *frame = opaque;
+    gst_video_frame_unmap(frame);
+    g_free(frame);
+}
+
+static gboolean open_stabilizer(Video *video, GstCaps *caps)
+{
+    if (!gst_video_info_from_caps(&video->info, caps))
+        return FALSE;
+
+    L1L2StabConfig cfg;
+    l1l2stab_config_init(&cfg, sizeof cfg);
+    cfg.format = L1L2STAB_FORMAT_GRAY8;
+    cfg.width = video->info.width;
+    cfg.height = video->info.height;
+    cfg.window = WINDOW;
+    const L1L2StabResult r = l1l2stab_create(&video->stab, &cfg);
+    return r == L1L2STAB_OK || fail(video->path, "%s", l1l2stab_strerror(r));
+}
+
+static L1L2StabResult drain(Video *video)
+{
+    L1L2StabInfo info;
+    L1L2StabResult r;
+    while ((r = l1l2stab_pull(video->stab, NULL, &info)) == L1L2STAB_OK)
+        add_motion(video, &info);
+    return r;
+}
+
+static gboolean push_sample(Video *video, GstSample *sample)
+{
+    if (!video->stab && !open_stabilizer(video, gst_sample_get_caps(sample)))
+        return FALSE;
+
+    GstVideoFrame *frame = g_new0(GstVideoFrame, 1);
+    if (!gst_video_frame_map(frame, &video->info, gst_sample_get_buffer(sample), GST_MAP_READ)) {
+        g_free(frame);
+        return fail(video->path, "a frame cannot be read");
+    }
+    if (video->frames++ < PICTURE_FRAMES)
+        add_slit(video, frame);
+
+    L1L2StabFrame in = {
+        .data = {GST_VIDEO_FRAME_PLANE_DATA(frame, 0)},
+        .stride = {GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0)},
+        .opaque = frame,
+        .release = release_frame,
+    };
+    L1L2StabResult r = l1l2stab_push(video->stab, &in);
+    if (r != L1L2STAB_OK)
+        release_frame(frame);
+    else
+        r = drain(video);
+    return r >= 0 || fail(video->path, "%s", l1l2stab_strerror(r));
+}
+
+static gboolean measure_stream(Video *video, GstElement *pipeline)
+{
+    GstElement *sink = gst_bin_get_by_name(GST_BIN(pipeline), "frames");
+    GstSample *sample;
+    gboolean ok = TRUE;
+
+    gst_element_set_state(pipeline, GST_STATE_PLAYING);
+    while (ok && (sample = gst_app_sink_pull_sample(GST_APP_SINK(sink)))) {
+        ok = push_sample(video, sample);
+        gst_sample_unref(sample);
+    }
+    if (ok && !gst_app_sink_is_eos(GST_APP_SINK(sink))) {
+        char *reason = pipeline_error(pipeline, "there is no video in it");
+        ok = fail(video->path, "%s", reason);
+        g_free(reason);
+    } else if (ok && video->stab && (l1l2stab_finish(video->stab) != L1L2STAB_OK || drain(video) != L1L2STAB_EOS))
+        ok = fail(video->path, "the measurement broke off");
+    l1l2stab_free(&video->stab);
+    gst_element_set_state(pipeline, GST_STATE_NULL);
+    gst_object_unref(sink);
+    return ok && (video->frames > 0 || fail(video->path, "there is no video in it"));
+}
+
+static gboolean measure(Video *video)
+{
+    GError *error = NULL;
+    GstElement *pipeline = gst_parse_launch_full(DECODER, NULL, GST_PARSE_FLAG_FATAL_ERRORS, &error);
+    char *uri = pipeline ? gst_filename_to_uri(video->path, &error) : NULL;
+    gboolean ok = FALSE;
+
+    if (!uri) {
+        fail(video->path, "%s", error->message);
+        g_clear_error(&error);
+    } else {
+        GstElement *source = gst_bin_get_by_name(GST_BIN(pipeline), "source");
+        g_object_set(source, "uri", uri, NULL);
+        gst_object_unref(source);
+        video->slits = g_byte_array_new();
+        ok = measure_stream(video, pipeline);
+    }
+    g_free(uri);
+    g_clear_object(&pipeline);
+    return ok;
+}
+
+/* ---- the picture ---- */
+
+static void paint(GstVideoFrame *picture, int top, const Video *video, int frames, int columns)
+{
+    const gssize stride = GST_VIDEO_FRAME_PLANE_STRIDE(picture, 0);
+    const int height = video->info.height;
+    for (int y = 0; y < height; y++) {
+        guint8 *row = (guint8 *)GST_VIDEO_FRAME_PLANE_DATA(picture, 0) + (top + y) * stride;
+        for (int t = 0; t < frames; t++)
+            memset(row + (gssize)t * columns, video->slits->data[(gssize)t * height + y], (size_t)columns);
+    }
+}
+
+static GstBuffer *make_picture(const Video *a, const Video *b, GstVideoInfo *info)
+{
+    const int frames = MIN(PICTURE_FRAMES, MIN(a->frames, b->frames));
+    const int columns = MAX(1, PICTURE_WIDTH / frames);
+    gst_video_info_set_format(info, GST_VIDEO_FORMAT_GRAY8, (guint)(frames * columns),
+                              (guint)(a->info.height + SEPARATOR + b->info.height));
+
+    GstBuffer *buffer = gst_buffer_new_allocate(NULL, GST_VIDEO_INFO_SIZE(info), NULL);
+    GstVideoFrame picture;
+    gst_buffer_memset(buffer, 0, 255, GST_VIDEO_INFO_SIZE(info));
+    if (gst_video_frame_map(&picture, info, buffer, GST_MAP_READWRITE)) {
+        paint(&picture, 0, a, frames, columns);
+        paint(&picture, a->info.height + SEPARATOR, b, frames, columns);
+        gst_video_frame_unmap(&picture);
+    }
+    return buffer;
+}
+
+static gboolean write_picture(const char *path, const Video *a, const Video *b)
+{
+    GError *error = NULL;
+    GstElement *pipeline = gst_parse_launch_full(PNG_WRITER, NULL, GST_PARSE_FLAG_FATAL_ERRORS, &error);
+    if (!pipeline) {
+        fail(path, "%s", error->message);
+        g_clear_error(&error);
+        return FALSE;
+    }
+    GstElement *source = gst_bin_get_by_name(GST_BIN(pipeline), "picture");
+    GstElement *file = gst_bin_get_by_name(GST_BIN(pipeline), "file");
+    GstBus *bus = gst_element_get_bus(pipeline);
+    GstVideoInfo info;
+    GstBuffer *picture = make_picture(a, b, &info);
+    GstCaps *caps = gst_video_info_to_caps(&info);
+    g_object_set(file, "location", path, NULL);
+    g_object_set(source, "caps", caps, NULL);
+    gst_caps_unref(caps);
+
+    gst_app_src_push_buffer(GST_APP_SRC(source), picture);
+    gst_app_src_end_of_stream(GST_APP_SRC(source));
+    gst_element_set_state(pipeline, GST_STATE_PLAYING);
+    GstMessage *end = gst_bus_timed_pop_filtered(bus, GST_CLOCK_TIME_NONE, GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
+    const gboolean ok = GST_MESSAGE_TYPE(end) == GST_MESSAGE_EOS || fail(path, "the picture cannot be written");
+
+    gst_element_set_state(pipeline, GST_STATE_NULL);
+    gst_message_unref(end);
+    gst_object_unref(bus);
+    gst_object_unref(file);
+    gst_object_unref(source);
+    gst_object_unref(pipeline);
+    return ok;
+}
+
+int main(int argc, char **argv)
+{
+    char *picture = NULL;
+    const GOptionEntry options[] = {
+        {"picture", 0, 0, G_OPTION_ARG_FILENAME, &picture, "Slit scan of A above that of B", "OUT.png"}, {NULL}};
+    GOptionContext *context = g_option_context_new("A [B]");
+    g_option_context_add_main_entries(context, options, NULL);
+    g_option_context_add_group(context, gst_init_get_option_group());
+    const gboolean parsed = g_option_context_parse(context, &argc, &argv, NULL);
+    g_option_context_free(context);
+    if (!parsed || argc < 2 || argc > 3 || (picture && argc < 3)) {
+        g_printerr("usage: measure-shake [--picture=OUT.png] A [B]\n");
+        return EXIT_USAGE;
+    }
+
+    Video videos[2] = {{.path = argv[1]}, {.path = argv[2]}};
+    gboolean ok = TRUE;
+    for (int i = 0; i < argc - 1 && ok; i++) {
+        ok = measure(&videos[i]);
+        if (ok)
+            g_print("%s: %.3f px\n", videos[i].path, shake_of(&videos[i]));
+    }
+    if (ok && argc == 3 && shake_of(&videos[0]) > 0)
+        g_print("ratio: %.4f\n", shake_of(&videos[1]) / shake_of(&videos[0]));
+    if (ok && picture)
+        ok = write_picture(picture, &videos[0], &videos[1]);
+
+    for (int i = 0; i < 2; i++)
+        if (videos[i].slits)
+            g_byte_array_unref(videos[i].slits);
+    g_free(picture);
+    return ok ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Stabilizes a video file and says by how much the shake fell. Builds the tree first, installing what is missing.
+# usage: samples/stabilize.sh [OPTION...] [IN [OUT]]
+#   IN       a video; without it a shaky clip is rendered
+#   OUT      ends with .mp4, .m4v, .mov or .mkv; default: IN's name with -stabilized.mp4, in the current directory
+#   OPTION   a property of the element, such as --lambda=1 or --crop-ratio=0.85; --help lists them
+# BUILD_DIR in the environment: another build directory than build
+set -euo pipefail
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=$(realpath -m "${BUILD_DIR:-$top/build}")
+
+die() {
+  echo "stabilize: $*" >&2
+  exit 1
+}
+
+options=()
+while [[ ${1:-} == -* ]]; do
+  [[ $1 != -- ]] || { shift && break; }
+  options+=("$1")
+  shift
+done
+[[ $# -le 2 ]] || die "too many arguments: [OPTION...] [IN [OUT]], and options as --name=value"
+
+# What can be said before anything is installed or built.
+if [[ $# -gt 0 ]]; then
+  [[ -e $1 ]] || die "$1: there is no such file"
+  [[ -f $1 && -r $1 ]] || die "$1: cannot be read"
+fi
+
+"$top/.ci/prepare.sh" "$build"
+export GST_PLUGIN_PATH=$build/plugin${GST_PLUGIN_PATH:+:$GST_PLUGIN_PATH}
+export GST_REGISTRY=$build/plugin/registry.bin
+
+if [[ " ${options[*]} " == *" --help "* ]]; then
+  exec "$build/samples/stabilize-file" --help
+fi
+
+if [[ $# -eq 0 ]]; then
+  mkdir -p "$top/out"
+  in=$top/out/shaky.mp4
+  out=$top/out/shaky-stabilized.mp4
+  echo "rendering a shaky clip" >&2
+  "$build/samples/render-shaky" "$in" "$top/out/shaky-motion.txt"
+else
+  in=$1
+  name=${in##*/}
+  out=${2:-${name%.*}-stabilized.mp4}
+fi
+picture=${out%.*}.png
+
+"$build/samples/stabilize-file" "${options[@]}" -- "$in" "$out"
+
+echo "measuring" >&2
+result=$("$build/samples/measure-shake" --picture="$picture" -- "$in" "$out")
+before=$(sed -n '1s/.*: \([0-9.]* px\)$/\1/p' <<<"$result")
+after=$(sed -n '2s/.*: \([0-9.]* px\)$/\1/p' <<<"$result")
+cat <<END
+input    $in
+output   $out
+picture  $picture (slit scan, before above after)
+shake    $before before, $after after (rms jump of a frame's corner, at 640 px width)
+END

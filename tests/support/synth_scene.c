@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Noise of equal strength in every octave, as in natural pictures, made coarse to fine: each level is the finer
+ * sampling of the cubic B-spline of the level before it (two-scale relation), plus new noise. Shapes with soft edges
+ * are drawn over it: they give the corners.
+ */
+#include "synth_scene.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+enum {
+    LUMA_LOG2 = 11,
+    CHROMA_LOG2 = 9,
+    COARSEST_LOG2 = 2,
+    SHAPES = 500
+};
+
+uint64_t synth_hash(uint64_t key)
+{
+    key += 0x9e3779b97f4a7c15u;
+    key = (key ^ (key >> 30)) * 0xbf58476d1ce4e5b9u;
+    key = (key ^ (key >> 27)) * 0x94d049bb133111ebu;
+    return key ^ (key >> 31);
+}
+
+void *synth_alloc(size_t count, size_t size)
+{
+    void *p = calloc(count, size);
+    if (!p)
+        abort();
+    return p;
+}
+
+/* Uniform in [-1, 1). */
+static float uniform(uint64_t key)
+{
+    return (float)(int32_t)(synth_hash(key) >> 32) * (1.0f / 2147483648.0f);
+}
+
+/* fine (2n x 2n) = the B-spline of coarse (n x n), sampled twice as finely. rows is scratch for n x 2n. */
+static void refine(const float *coarse, int n, float *rows, float *fine)
+{
+    const int mask = n - 1;
+    for (int y = 0; y < n; y++) {
+        const float *c = coarse + (size_t)y * n;
+        float *r = rows + (size_t)y * 2 * n;
+        for (int x = 0; x < n; x++) {
+            const float here = c[x], after = c[(x + 1) & mask];
+            r[2 * x] = (c[(x - 1) & mask] + 6.0f * here + after) * 0.125f;
+            r[2 * x + 1] = (here + after) * 0.5f;
+        }
+    }
+    for (int y = 0; y < n; y++) {
+        const float *before = rows + (size_t)((y - 1) & mask) * 2 * n;
+        const float *here = rows + (size_t)y * 2 * n;
+        const float *after = rows + (size_t)((y + 1) & mask) * 2 * n;
+        float *even = fine + (size_t)(2 * y) * 2 * n;
+        float *odd = even + 2 * n;
+        for (int x = 0; x < 2 * n; x++) {
+            even[x] = (before[x] + 6.0f * here[x] + after[x]) * 0.125f;
+            odd[x] = (here[x] + after[x]) * 0.5f;
+        }
+    }
+}
+
+/* The noise, 2^log2_size texels a side; its finest octave has a lattice of `finest` texels (a power of two). */
+static float *make_noise(int log2_size, int finest, uint64_t seed)
+{
+    const size_t count = (size_t)1 << (2 * log2_size);
+    float *now = synth_alloc(count, sizeof *now);
+    float *next = synth_alloc(count, sizeof *next);
+    float *rows = synth_alloc(count / 2, sizeof *rows);
+    for (int level = COARSEST_LOG2;; level++) {
+        const int n = 1 << level;
+        if (((1 << log2_size) >> level) >= finest)
+            for (int i = 0; i < n * n; i++)
+                now[i] += uniform(synth_hash(seed + (uint64_t)level) + (uint64_t)i);
+        if (level == log2_size)
+            break;
+        refine(now, n, rows, next);
+        float *swap = now;
+        now = next;
+        next = swap;
+    }
+    free(next);
+    free(rows);
+    return now;
+}
+
+/* A disc or a turned rectangle, its level raised or lowered; the edge is three texels (1.5 px) wide. */
+static void draw_shape(float *tile, int log2_size, uint64_t key)
+{
+    const int n = 1 << log2_size;
+    const float cx = (uniform(key) + 1.0f) * 0.5f * (float)n, cy = (uniform(key + 1) + 1.0f) * 0.5f * (float)n;
+    const float u = (uniform(key + 2) + 1.0f) * 0.5f;
+    const float half_w = 8.0f + 90.0f * u * u, half_h = half_w * (0.7f + 0.3f * uniform(key + 3));
+    const float angle = 3.14159265f * uniform(key + 4), c = cosf(angle), s = sinf(angle);
+    const bool disc = uniform(key + 6) > 0.4f;
+    const float level = uniform(key + 5) > 0.0f ? 1.2f : -1.2f;
+    const int reach = (int)(disc ? half_h : sqrtf(half_w * half_w + half_h * half_h)) + 3;
+    for (int j = -reach; j <= reach; j++) {
+        for (int i = -reach; i <= reach; i++) {
+            const float x = c * (float)i + s * (float)j, y = c * (float)j - s * (float)i;
+            const float inside = disc ? half_h - sqrtf(x * x + y * y) : fminf(half_w - fabsf(x), half_h - fabsf(y));
+            const float k = fminf(fmaxf(inside / 3.0f + 0.5f, 0.0f), 1.0f);
+            const int row = ((int)cy + j) & (n - 1), column = ((int)cx + i) & (n - 1);
+            tile[(size_t)row * n + column] += level * k * k * (3.0f - 2.0f * k);
+        }
+    }
+}
+
+/* Grey levels centre +- reach, softly clipped. */
+static SynthTile quantize(const float *tile, int log2_size, float gain, float centre, float reach)
+{
+    const size_t count = (size_t)1 << (2 * log2_size);
+    SynthTile out = {log2_size, synth_alloc(count, sizeof *out.texel)};
+    for (size_t i = 0; i < count; i++) {
+        const float v = tile[i] * gain;
+        out.texel[i] = (uint16_t)((centre + reach * v / sqrtf(1.0f + v * v)) * 128.0f + 0.5f);
+    }
+    return out;
+}
+
+void synth_scene_init(SynthScene *scene, uint64_t seed)
+{
+    const uint64_t key = synth_hash(seed);
+    float *tile = make_noise(LUMA_LOG2, 4, key);
+    for (int i = 0; i < SHAPES; i++)
+        draw_shape(tile, LUMA_LOG2, synth_hash(key + 100u + (uint64_t)i));
+    scene->luma = quantize(tile, LUMA_LOG2, 0.55f, 125.0f, 100.0f);
+    free(tile);
+    for (int c = 0; c < 2; c++) {
+        tile = make_noise(CHROMA_LOG2, 8, key + 50u + (uint64_t)c);
+        scene->chroma[c] = quantize(tile, CHROMA_LOG2, 0.8f, 128.0f, 36.0f);
+        free(tile);
+    }
+}
+
+void synth_scene_clear(SynthScene *scene)
+{
+    free(scene->luma.texel);
+    free(scene->chroma[0].texel);
+    free(scene->chroma[1].texel);
+}

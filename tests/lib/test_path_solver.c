@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: MIT */
+/* The optimum: against its conditions (KKT), and against the independent solutions of tests/reference/windows.txt. */
+#include <stdio.h>
+#include <string.h>
+
+#include "checkx.h"
+#include "path_ipm.h"
+#include "path_solver.h"
+#include "rng.h"
+
+enum { MAX_COUNT = 160 };
+
+typedef struct Window {
+    char name[64];
+    int count, history;
+    double crop, past[3][4], motion[MAX_COUNT][4];
+    int width, height;
+} Window;
+
+static L1L2Mat mat(const double p[4])
+{
+    return l1l2_mat_similarity(p[0], p[1], p[2], p[3]);
+}
+
+static void describe(const Window *w, double lambda, L1L2PathProblem *p)
+{
+    const L1L2Crop crop = l1l2_crop_make(w->width, w->height, w->crop);
+    L1L2Mat camera = l1l2_mat_identity();
+    p->count = w->count;
+    p->history = w->history;
+    for (int i = 0; i < w->history; i++) {
+        const L1L2Mat past = mat(w->past[i]);
+        l1l2_q_from_mat(&past, p->past[L1L2_HISTORY - w->history + i]);
+    }
+    for (int t = 0; t < w->count; t++) {
+        if (t > 0)
+            camera = l1l2_mat_mul(camera, mat(w->motion[t]));
+        l1l2_path_problem_set(p, t, &camera, lambda, &crop);
+    }
+}
+
+static bool read_four(FILE *file, double v[4])
+{
+    return fscanf(file, "%lf %lf %lf %lf", &v[0], &v[1], &v[2], &v[3]) == 4;
+}
+
+/* The next window's motions; the file stands at its first "lambda" afterwards. */
+static bool read_window(FILE *file, Window *w)
+{
+    char word[16];
+    if (fscanf(file, "%15s %d %d %lf %d %d %63s", word, &w->count, &w->history, &w->crop, &w->width, &w->height,
+               w->name) != 7)
+        return false;
+    ck_assert_str_eq(word, "window");
+    ck_assert_int_le(w->count, MAX_COUNT);
+    for (int i = 0; i < w->history; i++)
+        ck_assert(fscanf(file, "%15s", word) == 1 && strcmp(word, "past") == 0 && read_four(file, w->past[i]));
+    for (int t = 0; t < w->count; t++)
+        ck_assert(fscanf(file, "%15s", word) == 1 && strcmp(word, "F") == 0 && read_four(file, w->motion[t]));
+    return true;
+}
+
+/* Corners of the crop window under two paths, px at 1920x1080's diagonal. */
+static double corner_distance_px(const Window *w, const double q[4], const L1L2Mat *expected)
+{
+    const L1L2Crop crop = l1l2_crop_make(w->width, w->height, w->crop);
+    const L1L2Mat found = l1l2_q_to_mat(q);
+    return hypot(1920, 1080) *
+           l1l2_mat_corner_distance(&found, expected, w->crop * crop.half_w, w->crop * crop.half_h);
+}
+
+static void against_the_reference(L1L2SolverChoice choice, double relative, double corner_px)
+{
+    FILE *file = fopen(REFERENCE_WINDOWS, "r");
+    ck_assert_ptr_nonnull(file);
+    L1L2PathProblem *p = l1l2_path_problem_create(MAX_COUNT);
+    L1L2PathSolver *solver = l1l2_path_solver_create(MAX_COUNT, choice);
+    static double q[MAX_COUNT][L1L2_DIM];
+    Window w;
+    int windows = 0, at_first_check = 0, checked = 0;
+    for (; read_window(file, &w); windows++)
+        for (int i = 0; i < 8; i++) {
+            double lambda, objective, four[4];
+            int t;
+            ck_assert_int_eq(fscanf(file, " lambda %lf %lf", &lambda, &objective), 2);
+            describe(&w, lambda, p);
+            const L1L2SolverReport report = l1l2_path_solver_solve(solver, p, q);
+            const double found = l1l2_path_objective(p, (const double(*)[L1L2_DIM])q);
+            ck_assert_msg(report.converged, "%s, lambda %g: not converged, bound %g", w.name, lambda, report.bound);
+            ck_assert_msg(fabs(found - objective) <= relative * objective + 1e-9,
+                          "%s, lambda %g: objective %.12g, reference %.12g", w.name, lambda, found, objective);
+            ck_assert_msg(report.excess <= 1e-6, "%s, lambda %g: a crop row is broken by %g", w.name, lambda,
+                          report.excess);
+            while (fscanf(file, " P %d", &t) == 1 && read_four(file, four)) {
+                const L1L2Mat expected = mat(four);
+                const double distance = corner_distance_px(&w, q[t], &expected);
+                ck_assert_msg(distance <= corner_px, "%s, lambda %g, frame %d: corners %g px off", w.name, lambda, t,
+                              distance);
+            }
+            checked++;
+            at_first_check += report.osqp_iterations == 1;
+        }
+    fclose(file);
+    printf("%d windows x 8 lambdas; OSQP accepted at its first check: %d of %d\n", windows, at_first_check, checked);
+    ck_assert_int_ge(windows, 40);
+    if (choice == L1L2_SOLVER_BOTH)
+        ck_assert_int_ge(100 * at_first_check, 80 * checked);
+    l1l2_path_solver_free(solver);
+    l1l2_path_problem_free(p);
+}
+
+START_TEST(the_checked_predictor_finds_the_reference_optimum)
+{
+    against_the_reference(L1L2_SOLVER_BOTH, 1e-7, 0.01);
+}
+END_TEST
+
+START_TEST(the_predictor_alone_finds_the_reference_optimum)
+{
+    against_the_reference(L1L2_SOLVER_PREDICTOR, 1e-7, 0.01);
+}
+END_TEST
+
+static void random_walk(Window *w, uint64_t seed, int count, int history, double shake)
+{
+    L1L2Rng rng = l1l2_rng_seeded(seed);
+    *w = (Window){.count = count, .history = history, .crop = 0.8, .width = 640, .height = 360};
+    for (int t = 0; t < count; t++)
+        for (int j = 0; j < 4; j++)
+            w->motion[t][j] = (j == 0) + shake * (l1l2_rng_next(&rng) / 2147483648.0 - 1.0);
+    for (int i = 0; i < history; i++)
+        w->past[i][0] = 1.0, w->past[i][2] = 0.002 * i;
+}
+
+/* What makes a point the optimum, each checked here from the problem's definition. */
+static void check_kkt(const L1L2PathProblem *p, const L1L2PathPoint *point)
+{
+    const double(*q)[L1L2_DIM] = (const double(*)[L1L2_DIM])point->q;
+    static double force[MAX_COUNT][L1L2_DIM];
+    ck_assert(l1l2_path_excess(p, q) <= 1e-12);
+    for (int t = 0; t < p->count; t++)
+        for (int j = 0; j < L1L2_DIM; j++)
+            force[t][j] = 2.0 * p->lambda[t] * (q[t][j] - p->camera[t][j]);
+    for (int order = 1; order <= 3; order++)
+        for (int i = 0; i < l1l2_terms(order, p->count, p->history); i++)
+            for (int j = 0; j < L1L2_DIM; j++) {
+                const int t = i + l1l2_terms_first(order, p->history);
+                const double *y = point->term_dual[l1l2_term_index(order, p->count, p->history, i, j)];
+                const double d = l1l2_path_difference(p, q, order, t, j);
+                ck_assert(y[0] >= 0.0 && y[1] >= 0.0);
+                ck_assert_near(y[0] + y[1], p->weight[order - 1], 1e-9);
+                ck_assert_near((y[0] - y[1]) * d, p->weight[order - 1] * fabs(d), 1e-8); /* a subgradient of |d| */
+                for (int m = 0; m <= order && m <= t; m++)
+                    force[t - m][j] += (y[0] - y[1]) * l1l2_difference[order - 1][m];
+            }
+    for (int t = 0; t < p->count; t++)
+        for (int r = 0; r < L1L2_CROP_ROWS; r++) {
+            const double y = point->crop_dual[t][r];
+            double v = 0.0;
+            for (int j = 0; j < L1L2_DIM; j++) {
+                v += p->G[t][r][j] * q[t][j];
+                force[t][j] += y * p->G[t][r][j];
+            }
+            ck_assert_near(y > 0.0 ? y * (p->hi[t][r] - v) : y * (p->lo[t][r] - v), 0.0, 1e-8);
+        }
+    for (int t = 0; t < p->count; t++)
+        for (int j = 0; j < L1L2_DIM; j++)
+            ck_assert_near(force[t][j], 0.0, 1e-5);
+}
+
+START_TEST(the_predictor_meets_the_conditions_of_an_optimum)
+{
+    static const double shakes[] = {0.0, 0.001, 0.01, 0.05, 0.3}, lambdas[] = {0.0, 0.01, 0.5, 100.0};
+    L1L2PathProblem *p = l1l2_path_problem_create(MAX_COUNT);
+    L1L2PathIpm *ipm = l1l2_path_ipm_create(MAX_COUNT);
+    L1L2PathPoint point;
+    Window w;
+    for (int round = 0; round < 80; round++) {
+        const int counts[] = {1, 2, 3, 4, 7, 30, 150};
+        random_walk(&w, (uint64_t)round, counts[round % 7], round % 4, shakes[round % 5]);
+        describe(&w, lambdas[round / 20], p);
+        const L1L2PathIpmReport report = l1l2_path_ipm_solve(ipm, p, &point);
+        ck_assert_msg(report.converged, "round %d: bound %g after %d iterations", round, report.bound,
+                      report.iterations);
+        check_kkt(p, &point);
+    }
+    l1l2_path_ipm_free(ipm);
+    l1l2_path_problem_free(p);
+}
+END_TEST
+
+START_TEST(osqp_alone_comes_near_the_optimum)
+{
+    L1L2PathProblem *p = l1l2_path_problem_create(MAX_COUNT);
+    L1L2PathSolver *osqp = l1l2_path_solver_create(MAX_COUNT, L1L2_SOLVER_OSQP);
+    L1L2PathSolver *both = l1l2_path_solver_create(MAX_COUNT, L1L2_SOLVER_BOTH);
+    static double q[MAX_COUNT][L1L2_DIM], best[MAX_COUNT][L1L2_DIM];
+    Window w;
+    for (int round = 0; round < 4; round++) {
+        random_walk(&w, (uint64_t)round, 40, round, 0.01);
+        describe(&w, 0.5, p);
+        ck_assert(l1l2_path_solver_solve(both, p, best).converged);
+        const L1L2SolverReport report = l1l2_path_solver_solve(osqp, p, q);
+        ck_assert_int_eq(report.decided_by, L1L2_SOLVER_OSQP);
+        ck_assert_near(l1l2_path_objective(p, (const double(*)[L1L2_DIM])q) /
+                           l1l2_path_objective(p, (const double(*)[L1L2_DIM])best), 1.0, 1e-3);
+    }
+    l1l2_path_solver_free(osqp);
+    l1l2_path_solver_free(both);
+    l1l2_path_problem_free(p);
+}
+END_TEST
+
+START_TEST(the_same_window_gives_the_same_bits)
+{
+    L1L2PathProblem *p = l1l2_path_problem_create(MAX_COUNT);
+    L1L2PathSolver *a = l1l2_path_solver_create(MAX_COUNT, L1L2_SOLVER_BOTH);
+    L1L2PathSolver *b = l1l2_path_solver_create(MAX_COUNT, L1L2_SOLVER_BOTH);
+    static double first[MAX_COUNT][L1L2_DIM], second[MAX_COUNT][L1L2_DIM];
+    Window w;
+    for (int round = 0; round < 6; round++) { /* b has solved other windows before */
+        random_walk(&w, (uint64_t)(round % 3), 150, 3, 0.02);
+        describe(&w, 0.5, p);
+        l1l2_path_solver_solve(b, p, second);
+        if (round < 3)
+            continue;
+        l1l2_path_solver_solve(a, p, first);
+        ck_assert_mem_eq(first, second, sizeof(double) * 150 * L1L2_DIM);
+    }
+    l1l2_path_solver_free(a);
+    l1l2_path_solver_free(b);
+    l1l2_path_problem_free(p);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("path_solver");
+    TCase *tcase = tcase_create("path_solver");
+    tcase_set_timeout(tcase, 60);
+    tcase_add_test(tcase, the_checked_predictor_finds_the_reference_optimum);
+    tcase_add_test(tcase, the_predictor_alone_finds_the_reference_optimum);
+    tcase_add_test(tcase, the_predictor_meets_the_conditions_of_an_optimum);
+    tcase_add_test(tcase, osqp_alone_comes_near_the_optimum);
+    tcase_add_test(tcase, the_same_window_gives_the_same_bits);
+    suite_add_tcase(suite, tcase);
+    return checkx_run(suite);
+}

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT */
+#include "stabharness.h"
+
+GstHarness *
+stab_harness_new (const gchar * caps, const gchar * property, ...)
+{
+  GstElementFactory *factory = gst_element_factory_find ("l1l2stab");
+  GstElement *element;
+  GstHarness *h;
+  GstBus *bus;
+  va_list properties;
+
+  fail_unless (factory != NULL, "the element is not on GST_PLUGIN_PATH");
+  va_start (properties, property);
+  element = gst_element_factory_create_valist (factory, property, properties);
+  va_end (properties);
+  gst_object_unref (factory);
+  fail_unless (element != NULL);
+
+  bus = gst_bus_new ();
+  gst_element_set_bus (element, bus);
+  gst_object_unref (bus);
+
+  h = gst_harness_new_with_element (element, "sink", "src");
+  gst_object_unref (element);
+  if (caps)
+    gst_harness_set_src_caps_str (h, caps);
+  return h;
+}
+
+void
+stab_harness_free (GstHarness * h)
+{
+  gst_element_set_state (h->element, GST_STATE_NULL);
+  gst_element_set_bus (h->element, NULL);
+  gst_harness_teardown (h);
+}
+
+GstMessage *
+stab_harness_message (GstHarness * h, GstMessageType type)
+{
+  GstBus *bus = gst_element_get_bus (h->element);
+  GstMessage *message = gst_bus_pop_filtered (bus, type);
+
+  gst_object_unref (bus);
+  return message;
+}
+
+guint8
+stab_frame_level (guint index)
+{
+  return 20 + index % 200;
+}
+
+GstBuffer *
+stab_frame_new (GstHarness * h, guint index)
+{
+  GstCaps *caps = gst_pad_get_current_caps (h->srcpad);
+  GstVideoInfo info;
+  GstBuffer *buffer;
+
+  fail_unless (gst_video_info_from_caps (&info, caps));
+  gst_caps_unref (caps);
+  buffer = gst_buffer_new_allocate (NULL, GST_VIDEO_INFO_SIZE (&info), NULL);
+  gst_buffer_memset (buffer, 0, stab_frame_level (index),
+      GST_VIDEO_INFO_SIZE (&info));
+  GST_BUFFER_PTS (buffer) = index * FRAME_DURATION;
+  GST_BUFFER_DURATION (buffer) = FRAME_DURATION;
+  return buffer;
+}
+
+/* 32-bit formats without alpha leave their fourth byte undefined. */
+static gboolean
+is_padding (const GstVideoFormatInfo * format, gint x)
+{
+  return GST_VIDEO_FORMAT_INFO_IS_RGB (format)
+      && !GST_VIDEO_FORMAT_INFO_HAS_ALPHA (format)
+      && GST_VIDEO_FORMAT_INFO_PSTRIDE (format, 0) == 4 && x % 4 == 3;
+}
+
+void
+stab_frame_assert_level (GstBuffer * buffer, GstCaps * caps, guint8 level)
+{
+  GstVideoInfo info;
+  GstVideoFrame frame;
+  guint p;
+  gint x, y;
+
+  fail_unless (gst_video_info_from_caps (&info, caps));
+  fail_unless (gst_video_frame_map (&frame, &info, buffer, GST_MAP_READ));
+  for (p = 0; p < GST_VIDEO_FRAME_N_PLANES (&frame); p++) {
+    gint comp[GST_VIDEO_MAX_COMPONENTS];
+    gint width, height;
+
+    gst_video_format_info_component (info.finfo, p, comp);
+    width = GST_VIDEO_FRAME_COMP_WIDTH (&frame, comp[0])
+        * GST_VIDEO_FRAME_COMP_PSTRIDE (&frame, comp[0]);
+    height = GST_VIDEO_FRAME_COMP_HEIGHT (&frame, comp[0]);
+    for (y = 0; y < height; y++) {
+      const guint8 *row = (const guint8 *) GST_VIDEO_FRAME_PLANE_DATA (&frame,
+          p) + y * GST_VIDEO_FRAME_PLANE_STRIDE (&frame, p);
+
+      for (x = 0; x < width; x++) {
+        if (row[x] != level && !is_padding (info.finfo, x))
+          fail ("plane %u, byte %d of row %d: %d, not %d", p, x, y, row[x],
+              level);
+      }
+    }
+  }
+  gst_video_frame_unmap (&frame);
+}
+
+void
+stab_push_frames (GstHarness * h, guint start, guint n)
+{
+  guint i;
+
+  for (i = start; i < start + n; i++)
+    fail_unless_equals_int (gst_harness_push (h, stab_frame_new (h, i)),
+        GST_FLOW_OK);
+}
+
+void
+stab_pull_frames (GstHarness * h, guint start, guint n)
+{
+  guint i;
+
+  for (i = start; i < start + n; i++) {
+    GstBuffer *buffer = gst_harness_try_pull (h);
+    GstCaps *caps;
+
+    fail_unless (buffer != NULL, "frame %u has not come out", i);
+    fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer), i * FRAME_DURATION);
+    fail_unless_equals_uint64 (GST_BUFFER_DURATION (buffer), FRAME_DURATION);
+    caps = gst_pad_get_current_caps (h->sinkpad);
+    stab_frame_assert_level (buffer, caps, stab_frame_level (i));
+    gst_caps_unref (caps);
+    gst_buffer_unref (buffer);
+  }
+  fail_unless_equals_int (gst_harness_buffers_in_queue (h), 0);
+}
+
+static GstPadProbeReturn
+record (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
+{
+  GString *line = user_data;
+
+  if (GST_PAD_PROBE_INFO_TYPE (info) & GST_PAD_PROBE_TYPE_BUFFER)
+    g_string_append_printf (line, "f%" G_GUINT64_FORMAT " ",
+        GST_BUFFER_PTS (GST_PAD_PROBE_INFO_BUFFER (info)) / FRAME_DURATION);
+  else
+    g_string_append_printf (line, "%s ",
+        GST_EVENT_TYPE_NAME (GST_PAD_PROBE_INFO_EVENT (info)));
+  return GST_PAD_PROBE_OK;
+}
+
+static void
+free_record (gpointer line)
+{
+  g_string_free (line, TRUE);
+}
+
+GString *
+stab_record_new (GstHarness * h)
+{
+  GString *line = g_string_new (NULL);
+
+  gst_pad_add_probe (h->sinkpad,
+      GST_PAD_PROBE_TYPE_BUFFER | GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM |
+      GST_PAD_PROBE_TYPE_EVENT_FLUSH, record, line, free_record);
+  return line;
+}

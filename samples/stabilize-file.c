@@ -175,7 +175,8 @@ static void link_audio(App *app, GstPad *pad, gboolean raw)
         gst_element_sync_state_with_parent(audio);
     else
         GST_ELEMENT_ERROR(app->pipeline, STREAM, FORMAT,
-                          ("the audio cannot be joined to the output: %s", error ? error->message : "its format"), (NULL));
+                          ("the audio cannot be joined to the output: %s", error ? error->message : "its format"),
+                          (NULL));
     g_clear_error(&error);
 }
 

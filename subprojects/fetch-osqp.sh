@@ -24,7 +24,7 @@ if hash_fits "$target"; then
 fi
 for module in pip setuptools wheel setuptools_scm; do
   "$python" -c "import $module" 2>/dev/null ||
-    die "Debian's Python has no $module: apt-get install python3-pip python3-setuptools python3-wheel python3-setuptools-scm"
+    die "$python has no $module: apt-get install python3-pip python3-setuptools python3-setuptools-scm python3-wheel"
 done
 
 # In the target's own directory, so that the last step is an atomic rename.

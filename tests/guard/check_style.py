@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What can be said of the text alone: check_style.py TREE | check_style.py --self-test
+
+No tabs, trailing blanks, control characters or Windows line ends; a final newline; SPDX first; lines of at most 120
+columns, files of at most 400 lines, C functions of at most 60.
+"""
+import re
+import sys
+from pathlib import Path
+
+MAX_COLUMNS = 120
+MAX_FILE_LINES = 400
+MAX_FUNCTION_LINES = 60
+
+PLACES = ('.ci', 'docs', 'lib', 'plugin', 'samples', 'subprojects/packagefiles/osqp', 'tests')
+SOURCE = {'.c', '.cpp', '.h', '.py', '.sh'}
+TEXT = SOURCE | {'.md', '.build', '.map', '.wrap', ''}
+SPDX = 'SPDX-License-Identifier: MIT'
+
+
+def line_faults(lines):
+    for number, line in enumerate(lines, 1):
+        if re.search(r'[\x00-\x08\x0b-\x1f\x7f\u200b-\u200f\u202a-\u202e\ufeff]', line):
+            yield number, 'an invisible character'
+        if '\t' in line:
+            yield number, 'a tab'
+        if line != line.rstrip():
+            yield number, 'trailing blanks'
+
+
+def function_faults(lines):
+    """A C function's body stands between a { and a } in the first column."""
+    start = None
+    for number, line in enumerate(lines, 1):
+        if line == '{':
+            start = number
+        elif line.startswith('}') and start is not None:
+            if number - start + 1 > MAX_FUNCTION_LINES:
+                yield start, f'a function of {number - start + 1} lines, {MAX_FUNCTION_LINES} at most'
+            start = None
+
+
+def faults(name, text):
+    """(line, what) of each fault of a file."""
+    suffix = Path(name).suffix
+    lines = text.split('\n')
+    if lines[-1] != '':
+        yield len(lines), 'no newline at the end'
+    lines = lines[:-1] if lines[-1] == '' else lines
+    yield from line_faults(lines)
+
+    source = suffix in SOURCE or name.endswith('meson.build')
+    first = lines[1:2] if lines and lines[0].startswith('#!') else lines[0:1]
+    if (source or lines and lines[0].startswith('#!')) and not (first and SPDX in first[0]):
+        yield 1, f'no {SPDX}'
+    if source and len(lines) > MAX_FILE_LINES:
+        yield len(lines), f'{len(lines)} lines, {MAX_FILE_LINES} at most'
+    if source:
+        for number, line in enumerate(lines, 1):
+            if len(line) > MAX_COLUMNS:
+                yield number, f'{len(line)} columns, {MAX_COLUMNS} at most'
+    if suffix in ('.c', '.cpp', '.h'):
+        yield from function_faults(lines)
+
+
+def check(tree):
+    files = [p for place in PLACES for p in (tree / place).rglob('*') if p.is_file()]
+    files += [p for p in tree.iterdir() if p.is_file()]
+    files += [p for p in (tree / 'subprojects').iterdir() if p.is_file()]
+    files = [p for p in files if p.suffix in TEXT and '__pycache__' not in p.parts]
+    count = 0
+    for file in sorted(files):
+        for number, what in faults(file.name, file.read_text(encoding='utf-8')):
+            count += 1
+            print(f'{file.relative_to(tree)}:{number}: {what}')
+    print(f'{len(files)} files, {count} faults')
+    return 1 if count or not files else 0
+
+
+def self_test():
+    """Planted faults: each has to be found; the clean file has to pass."""
+    head = f'/* {SPDX} */\n'
+    clean = head + 'int f(void)\n{\n' + '    f();\n' * (MAX_FUNCTION_LINES - 2) + '}\n'
+    planted = [
+        head + '\tint a;\n', head + 'int a; \n', head + 'int a;\r\n', head + 'int a;', 'int a;\n', '',
+        head + 'int \u200ba;\n', head + f'int {"a" * MAX_COLUMNS};\n', head + 'int a;\n' * MAX_FILE_LINES,
+        clean.replace('}', '    f();\n}'),
+    ]
+    missed = [text[:60] for text in planted if not list(faults('a.c', text))]
+    false_alarms = list(faults('a.c', clean)) + list(faults('README.md', 'a ' * 70 + 'b\n'))
+    print(f'missed: {missed}, false alarms: {false_alarms}')
+    return 1 if missed or false_alarms else 0
+
+
+if __name__ == '__main__':
+    sys.exit(self_test() if sys.argv[1] == '--self-test' else check(Path(sys.argv[1]).resolve()))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The pixel formats, one row each. Adding one? A row here, its name in the public header, and one in the element's caps. */
+/* The pixel formats, one row each. Adding one? A row here, its number in the public header, its name in the caps. */
 #include "format.h"
 
 #define FULL(components) {components, 0, 0}

@@ -3,7 +3,6 @@
  * A persistent pool of threads. The caller of l1l2_pool_run() works too, so a pool of one has no helper at all and
  * runs inline. One mutex guards everything: parts are rows by the dozen, taking one costs next to nothing.
  */
-#define _GNU_SOURCE /* sched_getaffinity */
 #include "pool.h"
 
 #include <pthread.h>

@@ -99,6 +99,7 @@ void l1l2_warp_render(L1L2Warp *w, const L1L2Mat *map, const uint8_t *const src[
     int bands = 0;
     for (int i = 0; i < format->planes; i++) {
         const int sub_x = format->plane[i].log2_sub_x, sub_y = format->plane[i].log2_sub_y;
+        const int components = format->plane[i].components;
         const L1L2WarpGrid from = l1l2_warp_grid(format, i, cfg->chroma_site, cfg->in_width, cfg->in_height);
         const L1L2WarpGrid to = l1l2_warp_grid(format, i, cfg->chroma_site, cfg->out_width, cfg->out_height);
         PlaneJob *plane = &job.plane[i];
@@ -110,8 +111,8 @@ void l1l2_warp_render(L1L2Warp *w, const L1L2Mat *map, const uint8_t *const src[
             .dst_stride = dst_stride[i],
             .width = l1l2_plane_size(cfg->out_width, sub_x),
             .height = l1l2_plane_size(cfg->out_height, sub_y),
-            .components = format->plane[i].components,
-            .run = l1l2_warp_u8_run(w->kernel.taps, format->plane[i].components),
+            .components = components,
+            .run = (cfg->plain ? l1l2_warp_u8_run_plain : l1l2_warp_u8_run)(w->kernel.taps, components),
         };
         plane->bands = (plane->height + BAND_ROWS - 1) / BAND_ROWS;
         bands += plane->bands;

@@ -10,6 +10,7 @@
 #ifndef L1L2_WARP_H
 #define L1L2_WARP_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -25,6 +26,7 @@ typedef struct L1L2WarpConfig {
     L1L2StabChromaSite chroma_site;
     L1L2StabInterpolation interpolation;
     int threads;               /* 0 = as many as there are cores */
+    bool plain;                /* for tests and benchmarks: plain C, whatever the processor has. The same bytes */
 } L1L2WarpConfig;
 
 /* On error *out is NULL. */

@@ -2,8 +2,8 @@
 /*
  * The warp's coordinate generators: from a map of frames to source positions for runs of output samples of one plane.
  *
- * Two coordinates are at play. In the frame: luma pixels in [0, W] x [0, H], pixel centres at half-integers. In a plane:
- * sample j is at j. Sample j lies at frame position `first + step * j`, by axis: L1L2WarpGrid.
+ * Two coordinates are at play. In the frame: luma pixels in [0, W] x [0, H], pixel centres at half-integers. In a
+ * plane: sample j is at j. It lies at the frame's `first + step * j`, by axis: L1L2WarpGrid.
  *
  * A generator writes positions for a kernel to read: fixed point, L1L2_WARP_PHASE_BITS fractional bits. Another kind of
  * map (a homography, a map for each row) is another generator with the same output.

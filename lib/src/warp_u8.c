@@ -4,12 +4,7 @@
 
 #include <stdbool.h>
 
-/* One body, compiled for every number of taps and components: they must be constants for the loops to unroll. */
-#if defined(__GNUC__)
-#define SPECIALIZED static inline __attribute__((always_inline))
-#else
-#define SPECIALIZED static inline
-#endif
+#include "warp_u8_impl.h"
 
 static inline uint8_t clamp_u8(int value)
 {
@@ -86,21 +81,13 @@ SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, con
     }
 }
 
-#define DEFINE_RUN(taps, components)                                                                                  \
-    static void run_##taps##_##components(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x,   \
-                                          const int32_t *y, int count, uint8_t *dst)                                  \
-    {                                                                                                                 \
-        run(src, kernel, x, y, count, dst, taps, components);                                                         \
-    }
-#define DEFINE_RUNS(taps) DEFINE_RUN(taps, 1) DEFINE_RUN(taps, 2) DEFINE_RUN(taps, 3) DEFINE_RUN(taps, 4)
-#define RUNS(taps) {run_##taps##_1, run_##taps##_2, run_##taps##_3, run_##taps##_4}
-
-DEFINE_RUNS(2)
-DEFINE_RUNS(4)
-DEFINE_RUNS(6)
+DEFINE_RUNS(l1l2_warp_u8_run_plain)
 
 L1L2WarpU8Run *l1l2_warp_u8_run(int taps, int components)
 {
-    static L1L2WarpU8Run *const runs[3][4] = {RUNS(2), RUNS(4), RUNS(6)};
-    return runs[taps / 2 - 1][components - 1];
+#ifdef L1L2_WARP_AVX2
+    if (__builtin_cpu_supports("avx2"))
+        return l1l2_warp_u8_run_avx2(taps, components);
+#endif
+    return l1l2_warp_u8_run_plain(taps, components);
 }

@@ -32,7 +32,13 @@ typedef struct L1L2WarpPlane {
 typedef void L1L2WarpU8Run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
                            int count, uint8_t *dst);
 
-/* For a kernel of 2, 4 or 6 taps and 1..4 interleaved components. */
+/* For a kernel of 2, 4 or 6 taps and 1..4 interleaved components: the fastest that this processor has. */
 L1L2WarpU8Run *l1l2_warp_u8_run(int taps, int components);
+
+/* Plain C, for every processor. */
+L1L2WarpU8Run *l1l2_warp_u8_run_plain(int taps, int components);
+
+/* There only where the build defines L1L2_WARP_AVX2, and for processors that have it. */
+L1L2WarpU8Run *l1l2_warp_u8_run_avx2(int taps, int components);
 
 #endif

@@ -4,7 +4,6 @@
  * Best and median of some frames; every frame has another map, as a stabilizer's have: 0.9 of the frame zoomed to fill
  * it, turned by up to 1 degree.
  */
-#define _POSIX_C_SOURCE 199309L /* clock_gettime */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -83,7 +82,8 @@ static void bench_kernel(const L1L2WarpConfig *cfg, const char *name, const Pict
             ms[t] = (double)(l1l2_clock_ns() - start) * 1e-6;
     }
     char what[64];
-    snprintf(what, sizeof what, "%s, %d thread%s", name, cfg->threads, cfg->threads > 1 ? "s" : "");
+    snprintf(what, sizeof what, "%s%s, %d thread%s", name, cfg->plain ? ", plain C" : "", cfg->threads,
+             cfg->threads > 1 ? "s" : "");
     print_times(what, ms);
     l1l2_warp_free(warp);
 }
@@ -96,10 +96,10 @@ static void bench(L1L2StabFormat id, int width, int height)
     printf("%s %dx%d, ms a frame\n", format->name, width, height);
     bench_copy(format, &src, &dst);
     for (int k = 0; k < 3; k++)
-        for (int threads = 1; threads <= 2; threads++) {
+        for (int way = 0; way < 4; way++) {
             const L1L2WarpConfig cfg = {.format = format, .in_width = width, .in_height = height, .out_width = width,
                                         .out_height = height, .interpolation = (L1L2StabInterpolation)k,
-                                        .threads = threads};
+                                        .threads = way % 2 + 1, .plain = way / 2};
             bench_kernel(&cfg, kernels[k], &src, &dst);
         }
     free_picture(&src);

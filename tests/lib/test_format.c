@@ -44,10 +44,12 @@ START_TEST(planes_of_a_frame_have_the_right_number_of_bytes)
         L1L2StabFormat format;
         int bytes[3];
     } cases[] = {
-        {L1L2STAB_FORMAT_GRAY8, {24}},         {L1L2STAB_FORMAT_I420, {24, 6, 6}},  {L1L2STAB_FORMAT_YV12, {24, 6, 6}},
-        {L1L2STAB_FORMAT_NV12, {24, 12}},      {L1L2STAB_FORMAT_NV21, {24, 12}},    {L1L2STAB_FORMAT_Y42B, {24, 12, 12}},
-        {L1L2STAB_FORMAT_Y444, {24, 24, 24}},  {L1L2STAB_FORMAT_BGRX, {96}},        {L1L2STAB_FORMAT_RGBX, {96}},
-        {L1L2STAB_FORMAT_BGRA, {96}},          {L1L2STAB_FORMAT_RGBA, {96}},        {L1L2STAB_FORMAT_BGR, {72}},
+        {L1L2STAB_FORMAT_GRAY8, {24}},       {L1L2STAB_FORMAT_I420, {24, 6, 6}},
+        {L1L2STAB_FORMAT_YV12, {24, 6, 6}},  {L1L2STAB_FORMAT_NV12, {24, 12}},
+        {L1L2STAB_FORMAT_NV21, {24, 12}},    {L1L2STAB_FORMAT_Y42B, {24, 12, 12}},
+        {L1L2STAB_FORMAT_Y444, {24, 24, 24}}, {L1L2STAB_FORMAT_BGRX, {96}},
+        {L1L2STAB_FORMAT_RGBX, {96}},        {L1L2STAB_FORMAT_BGRA, {96}},
+        {L1L2STAB_FORMAT_RGBA, {96}},        {L1L2STAB_FORMAT_BGR, {72}},
         {L1L2STAB_FORMAT_RGB, {72}},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The warp against a floating-point one, and its chroma against its luma. What must come out exactly: test_warp_exact. */
+/* The warp against a floating-point one, and its chroma against its luma. What must be exact: test_warp_exact.c. */
 #include "warp_fixture.h"
 
 #define PI 3.14159265358979323846
@@ -74,8 +74,8 @@ static double reference(const L1L2WarpConfig *cfg, const L1L2Mat *map, const Pic
 }
 
 /*
- * What may the fixed point cost on noise of full range? With G for the largest sum of a kernel's |weights| along an axis
- * and D for half the largest sum of their |slopes|:
+ * What may the fixed point cost on noise of full range? With G for the largest sum of a kernel's |weights| along an
+ * axis and D for half the largest sum of their |slopes|:
  *   the output's rounding           0.5
  *   positions to 1/1024             2 * 255 * D * G / 2048
  *   weights to 14 bits, twice the rounding of each, for the nearest takes what is left over

@@ -98,7 +98,7 @@ START_TEST(a_flat_picture_stays_flat)
 }
 END_TEST
 
-START_TEST(any_number_of_threads_gives_the_same_bytes)
+START_TEST(any_number_of_threads_and_plain_c_give_the_same_bytes)
 {
     static const int threads[] = {2, 3, 7};
     L1L2Rng rng = l1l2_rng_seeded(5);
@@ -114,6 +114,9 @@ START_TEST(any_number_of_threads_gives_the_same_bytes)
         warp_picture(&cfg, &map, &src, &many);
         assert_same_picture(&one, &many);
         assert_guards_untouched(&many);
+        cfg.plain = true;
+        warp_picture(&cfg, &map, &src, &many);
+        assert_same_picture(&one, &many);
     }
     picture_free(&src);
     picture_free(&one);
@@ -141,7 +144,8 @@ START_TEST(rows_may_run_from_bottom_to_top)
     Picture from = upside_down(&flipped), to = upside_down(&dst);
     for (int i = 0; i < src.format->planes; i++)
         for (int v = 0; v < src.plane[i].height; v++)
-            memcpy(sample(&from, i, 0, v), sample(&src, i, 0, v), (size_t)(src.plane[i].width * src.plane[i].components));
+            memcpy(sample(&from, i, 0, v), sample(&src, i, 0, v),
+                   (size_t)(src.plane[i].width * src.plane[i].components));
     const L1L2Mat map = l1l2_mat_similarity(0.93, 0.06, 1.3, -0.7);
     const L1L2WarpConfig cfg = warp_config(&src, &dst);
     warp_picture(&cfg, &map, &src, &expected);
@@ -272,7 +276,7 @@ int main(void)
     tcase_add_loop_test(tc, whole_steps_copy_and_repeat_the_edge, first, end);
     tcase_add_loop_test(tc, half_a_turn_reverses, first, end);
     tcase_add_loop_test(tc, a_flat_picture_stays_flat, first, end);
-    tcase_add_loop_test(tc, any_number_of_threads_gives_the_same_bytes, first, end);
+    tcase_add_loop_test(tc, any_number_of_threads_and_plain_c_give_the_same_bytes, first, end);
     tcase_add_loop_test(tc, rows_may_run_from_bottom_to_top, first, end);
     tcase_add_loop_test(tc, a_smaller_output_is_the_middle_of_the_full_one, first, end);
     tcase_add_test(tc, maps_to_nowhere_give_pixels_of_the_picture);

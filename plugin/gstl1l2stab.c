@@ -362,7 +362,8 @@ gst_l1l2_stab_class_init (GstL1L2StabClass * klass)
 
   trans_class->start = GST_DEBUG_FUNCPTR (gst_l1l2_stab_start);
   trans_class->stop = GST_DEBUG_FUNCPTR (gst_l1l2_stab_stop);
-  trans_class->transform_caps = GST_DEBUG_FUNCPTR (gst_l1l2_stab_transform_caps);
+  trans_class->transform_caps =
+      GST_DEBUG_FUNCPTR (gst_l1l2_stab_transform_caps);
   trans_class->set_caps = GST_DEBUG_FUNCPTR (gst_l1l2_stab_set_caps);
   trans_class->sink_event = GST_DEBUG_FUNCPTR (gst_l1l2_stab_sink_event);
   trans_class->query = GST_DEBUG_FUNCPTR (gst_l1l2_stab_query);
@@ -370,7 +371,8 @@ gst_l1l2_stab_class_init (GstL1L2StabClass * klass)
       GST_DEBUG_FUNCPTR (gst_l1l2_stab_propose_allocation);
   trans_class->decide_allocation =
       GST_DEBUG_FUNCPTR (gst_l1l2_stab_decide_allocation);
-  trans_class->transform_meta = GST_DEBUG_FUNCPTR (gst_l1l2_stab_transform_meta);
+  trans_class->transform_meta =
+      GST_DEBUG_FUNCPTR (gst_l1l2_stab_transform_meta);
   trans_class->submit_input_buffer =
       GST_DEBUG_FUNCPTR (gst_l1l2_stab_submit_input_buffer);
   trans_class->generate_output =

@@ -25,7 +25,7 @@ gst_l1l2_stab_join_get_type (void)
   static gsize type = 0;
   static const GEnumValue values[] = {
     {L1L2STAB_JOIN_CONTINUOUS,
-        "The next window goes on from the frames already given out",
+          "The next window goes on from the frames already given out",
         "continuous"},
     {L1L2STAB_JOIN_BLEND,
         "The paths of two windows are averaged where they overlap", "blend"},

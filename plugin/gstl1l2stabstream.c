@@ -114,8 +114,11 @@ copy_scarce (GstL1L2StabStream * stream, HeldFrame * held)
   GstBuffer *input = held->buffer;
   GstBuffer *copy;
 
-  if (!stream->own_pool)
+  if (!stream->own_pool) {
+    GST_INFO_OBJECT (stream->element, "upstream cannot lend %u buffers: "
+        "its frames are copied", stream->window);
     stream->own_pool = gst_l1l2_stab_alloc_own_pool (&stream->in_info);
+  }
   if (!stream->own_pool)
     return NULL;
   copy = gst_l1l2_stab_alloc_copy (stream->own_pool, input, &stream->in_info);

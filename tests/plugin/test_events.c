@@ -27,8 +27,7 @@ GST_START_TEST (a_serialized_event_stays_before_its_frame)
   fail_unless (gst_harness_push_event (h,
           custom_event (GST_EVENT_CUSTOM_DOWNSTREAM)));
   stab_push_frames (h, 3, WINDOW);
-  fail_unless_equals_string (out->str,
-      "f0 f1 f2 tag custom-downstream f3 ");
+  fail_unless_equals_string (out->str, "f0 f1 f2 tag custom-downstream f3 ");
   stab_harness_free (h);
 }
 

@@ -20,7 +20,7 @@ GST_START_TEST (every_frame_that_goes_in_comes_out_once_and_in_order)
 
 GST_END_TEST;
 
-GST_START_TEST (one_frame_comes_out_for_each_that_goes_in_once_the_window_is_full)
+GST_START_TEST (one_frame_comes_out_for_each_in_once_the_window_is_full)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   guint i;
@@ -218,8 +218,7 @@ frames_suite (void)
   tcase_add_loop_test (tc,
       every_frame_that_goes_in_comes_out_once_and_in_order, 0,
       G_N_ELEMENTS (counts));
-  tcase_add_test (tc,
-      one_frame_comes_out_for_each_that_goes_in_once_the_window_is_full);
+  tcase_add_test (tc, one_frame_comes_out_for_each_in_once_the_window_is_full);
   tcase_add_test (tc, flags_and_offsets_stay_with_their_frame);
   tcase_add_test (tc, frames_without_timestamps_come_out_without);
   tcase_add_test (tc, the_order_is_that_of_arrival_whatever_the_timestamps);

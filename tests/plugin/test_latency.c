@@ -172,8 +172,7 @@ latency_suite (void)
       G_N_ELEMENTS (cases));
   tcase_add_test (tc, upstreams_least_and_most_are_both_raised);
   tcase_add_test (tc, without_an_answer_upstream_there_is_none);
-  tcase_add_test (tc,
-      before_the_caps_are_known_25_frames_a_second_are_assumed);
+  tcase_add_test (tc, before_the_caps_are_known_25_frames_a_second_are_assumed);
   tcase_add_test (tc,
       a_message_is_posted_when_the_latency_changes_and_only_then);
   return s;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Buffers: any layout of theirs is honoured, and upstream is never starved by a window that holds them. */
-#define _GNU_SOURCE
 #include <gst/allocators/gstdmabuf.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include "stabharness.h"
 
@@ -60,8 +60,7 @@ static const gchar *padded_caps[] = {
 
 GST_START_TEST (padded_rows_and_moved_planes_are_honoured)
 {
-  GstHarness *h =
-      stab_harness_new (padded_caps[__i__], "window", WINDOW, NULL);
+  GstHarness *h = stab_harness_new (padded_caps[__i__], "window", WINDOW, NULL);
   guint i;
 
   for (i = 0; i < WINDOW + 2; i++)
@@ -119,7 +118,6 @@ offer_padded_pool (GstPad * pad, GstObject * parent, GstQuery * query)
   pool = gst_video_buffer_pool_new ();
   config = gst_buffer_pool_get_config (pool);
   gst_buffer_pool_config_set_params (config, caps, info.size, 0, 0);
-  gst_buffer_pool_config_add_option (config, GST_BUFFER_POOL_OPTION_VIDEO_META);
   gst_buffer_pool_config_add_option (config,
       GST_BUFFER_POOL_OPTION_VIDEO_ALIGNMENT);
   gst_buffer_pool_config_set_video_alignment (config, &align);

@@ -28,8 +28,11 @@ have_plugins (void)
 }
 
 /* Builds the pipeline from the format, whose %s are file names, and runs it to its end. */
-static void G_GNUC_PRINTF (1, 2)
+static void
 run (const gchar * format, ...)
+G_GNUC_PRINTF (1, 2);
+
+     static void run (const gchar * format, ...)
 {
   GError *error = NULL;
   GstElement *pipeline;

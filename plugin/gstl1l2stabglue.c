@@ -24,10 +24,9 @@ write_message (void *cookie, L1L2StabLogLevel level, const char *message)
   GstL1L2StabLog *log = cookie;
   guint i;
 
-  if (level == L1L2STAB_LOG_ERROR) {
-    g_free (log->reason);
+  /* What comes after the first is about its consequences. */
+  if (level == L1L2STAB_LOG_ERROR && !log->reason)
     log->reason = g_strdup (message);
-  }
   for (i = 0; i < G_N_ELEMENTS (levels); i++) {
     if (levels[i].ours == level)
       GST_CAT_LEVEL_LOG (GST_CAT_DEFAULT, levels[i].gst, log->object, "%s",
@@ -41,6 +40,7 @@ gst_l1l2_stab_glue_logger (L1L2StabLogger * logger, GstL1L2StabLog * log)
   GstDebugLevel threshold = gst_debug_category_get_threshold (GST_CAT_DEFAULT);
   guint i;
 
+  g_clear_pointer (&log->reason, g_free);
   logger->write = write_message;
   logger->cookie = log;
   logger->max_level = L1L2STAB_LOG_ERROR;       /* for the reason, always */

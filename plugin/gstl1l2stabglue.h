@@ -16,10 +16,11 @@ GST_DEBUG_CATEGORY_EXTERN (gst_l1l2_stab_debug);
 typedef struct
 {
   GstObject *object;            /* the messages' origin; not owned */
-  gchar *reason;                /* the latest message of L1L2STAB_LOG_ERROR, or NULL */
+  gchar *reason;                /* the first message of L1L2STAB_LOG_ERROR, or NULL */
 } GstL1L2StabLog;
 
-/* Sends the library's messages to the debug category, at its threshold of now, and keeps the reason of a failure. */
+/* Sends the library's messages to the debug category, at its threshold of now, and keeps the reason of a failure. An
+ * earlier one is forgotten. */
 void gst_l1l2_stab_glue_logger (L1L2StabLogger * logger, GstL1L2StabLog * log);
 
 /* Fills format, size, frame rate and chroma site, and nothing else. */

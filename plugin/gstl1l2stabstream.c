@@ -59,7 +59,6 @@ gst_l1l2_stab_stream_open (GstL1L2StabStream * stream,
 
   gst_l1l2_stab_glue_config (&config, in_info);
   gst_l1l2_stab_glue_logger (&config.logger, &stream->log);
-  g_clear_pointer (&stream->log.reason, g_free);
   return flow (stream, l1l2stab_create (&stream->stab, &config)) == GST_FLOW_OK;
 }
 

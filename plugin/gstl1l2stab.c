@@ -26,7 +26,7 @@
  *   in. ! queue ! l1l2stab ! x264enc ! queue ! mp4mux name=out ! filesink location=out.mp4 \
  *   in. ! queue max-size-time=0 max-size-bytes=0 max-size-buffers=0 ! audioconvert ! avenc_aac ! out.
  * ]| The same with sound. The queue of the other branch must have room for the
- * whole window; a queue's default is one second, and the pipeline would stall.
+ * whole window: by default a queue ends at one second, and the pipeline may stall.
  * |[
  * gst-launch-1.0 v4l2src ! videoconvert ! l1l2stab window=30 ! videoconvert ! autovideosink
  * ]| A camera, with a delay of one second at 30 frames a second.

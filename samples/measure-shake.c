@@ -30,7 +30,7 @@
 #define SEPARATOR 6 /* pixels */
 
 #define DECODER \
-    "uridecodebin name=source caps=video/x-raw(ANY) expose-all-streams=false ! videoconvert ! " \
+    "uridecodebin name=source ! videoconvert name=video ! " \
     "videoflip video-direction=auto ! video/x-raw, format=GRAY8 ! appsink name=frames sync=false max-buffers=4"
 #define PNG_WRITER "appsrc name=picture ! pngenc snapshot=true ! filesink name=file"
 
@@ -49,6 +49,7 @@ typedef struct Video {
     gboolean moving;   /* velocity is set */
     double sum;        /* of the squared accelerations, over corners and frames */
     int count;
+    gboolean failed;   /* and a line on stderr says why */
 } Video;
 
 /* One line on stderr. */
@@ -63,21 +64,24 @@ static gboolean G_GNUC_PRINTF(2, 3) fail(const char *path, const char *format, .
     return FALSE;
 }
 
-/* The error that stopped a pipeline, else the fallback. To be freed. */
-static char *pipeline_error(GstElement *pipeline, const char *fallback)
+/* Runs a pipeline to its end; whether it was a good one. */
+static gboolean run(GstElement *pipeline, const char *path)
 {
     GstBus *bus = gst_element_get_bus(pipeline);
-    GstMessage *message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
-    char *text = NULL;
-    if (message) {
+    gst_element_set_state(pipeline, GST_STATE_PLAYING);
+    GstMessage *end = gst_bus_timed_pop_filtered(bus, GST_CLOCK_TIME_NONE, GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
+    gst_element_set_state(pipeline, GST_STATE_NULL);
+
+    const gboolean ok = GST_MESSAGE_TYPE(end) == GST_MESSAGE_EOS;
+    if (!ok) {
         GError *error = NULL;
-        gst_message_parse_error(message, &error, NULL);
-        text = g_strdup(error->message);
+        gst_message_parse_error(end, &error, NULL);
+        fail(path, "%s", error->message);
         g_clear_error(&error);
-        gst_message_unref(message);
     }
+    gst_message_unref(end);
     gst_object_unref(bus);
-    return text ? text : g_strdup(fallback);
+    return ok;
 }
 
 /* ---- the shake ---- */
@@ -183,26 +187,46 @@ static gboolean push_sample(Video *video, GstSample *sample)
     return r >= 0 || fail(video->path, "%s", l1l2stab_strerror(r));
 }
 
-static gboolean measure_stream(Video *video, GstElement *pipeline)
+/* In the streaming thread. */
+static GstFlowReturn on_sample(GstAppSink *sink, gpointer data)
 {
-    GstElement *sink = gst_bin_get_by_name(GST_BIN(pipeline), "frames");
-    GstSample *sample;
-    gboolean ok = TRUE;
-
-    gst_element_set_state(pipeline, GST_STATE_PLAYING);
-    while (ok && (sample = gst_app_sink_pull_sample(GST_APP_SINK(sink)))) {
-        ok = push_sample(video, sample);
-        gst_sample_unref(sample);
+    Video *video = data;
+    GstSample *sample = gst_app_sink_pull_sample(sink);
+    if (sample && !push_sample(video, sample)) {
+        GST_ELEMENT_ERROR(sink, LIBRARY, FAILED, ("the measurement broke off"), (NULL));
+        video->failed = TRUE;
     }
-    if (ok && !gst_app_sink_is_eos(GST_APP_SINK(sink))) {
-        char *reason = pipeline_error(pipeline, "there is no video in it");
-        ok = fail(video->path, "%s", reason);
-        g_free(reason);
-    } else if (ok && video->stab && (l1l2stab_finish(video->stab) != L1L2STAB_OK || drain(video) != L1L2STAB_EOS))
+    g_clear_pointer(&sample, gst_sample_unref);
+    return video->failed ? GST_FLOW_ERROR : GST_FLOW_OK;
+}
+
+/* Without video nothing would ever arrive: neither a frame nor the end. */
+static void on_no_more_pads(GstElement *source, gpointer data)
+{
+    GstPad *pad = gst_element_get_static_pad(data, "sink");
+    if (!gst_pad_is_linked(pad))
+        GST_ELEMENT_ERROR(source, STREAM, DECODE, ("there is no video in it that can be decoded here"), (NULL));
+    gst_object_unref(pad);
+}
+
+static gboolean measure_stream(Video *video, GstElement *pipeline, const char *uri)
+{
+    GstElement *source = gst_bin_get_by_name(GST_BIN(pipeline), "source");
+    GstElement *convert = gst_bin_get_by_name(GST_BIN(pipeline), "video");
+    GstElement *sink = gst_bin_get_by_name(GST_BIN(pipeline), "frames");
+    GstAppSinkCallbacks callbacks = {.new_sample = on_sample};
+
+    g_object_set(source, "uri", uri, NULL);
+    g_signal_connect(source, "no-more-pads", G_CALLBACK(on_no_more_pads), convert);
+    gst_app_sink_set_callbacks(GST_APP_SINK(sink), &callbacks, video, NULL);
+    gboolean ok = run(pipeline, video->path);
+    if (ok && video->stab && (l1l2stab_finish(video->stab) != L1L2STAB_OK || drain(video) != L1L2STAB_EOS))
         ok = fail(video->path, "the measurement broke off");
     l1l2stab_free(&video->stab);
-    gst_element_set_state(pipeline, GST_STATE_NULL);
+
     gst_object_unref(sink);
+    gst_object_unref(convert);
+    gst_object_unref(source);
     return ok && (video->frames > 0 || fail(video->path, "there is no video in it"));
 }
 
@@ -217,11 +241,8 @@ static gboolean measure(Video *video)
         fail(video->path, "%s", error->message);
         g_clear_error(&error);
     } else {
-        GstElement *source = gst_bin_get_by_name(GST_BIN(pipeline), "source");
-        g_object_set(source, "uri", uri, NULL);
-        gst_object_unref(source);
         video->slits = g_byte_array_new();
-        ok = measure_stream(video, pipeline);
+        ok = measure_stream(video, pipeline, uri);
     }
     g_free(uri);
     g_clear_object(&pipeline);
@@ -270,7 +291,6 @@ static gboolean write_picture(const char *path, const Video *a, const Video *b)
     }
     GstElement *source = gst_bin_get_by_name(GST_BIN(pipeline), "picture");
     GstElement *file = gst_bin_get_by_name(GST_BIN(pipeline), "file");
-    GstBus *bus = gst_element_get_bus(pipeline);
     GstVideoInfo info;
     GstBuffer *picture = make_picture(a, b, &info);
     GstCaps *caps = gst_video_info_to_caps(&info);
@@ -280,13 +300,7 @@ static gboolean write_picture(const char *path, const Video *a, const Video *b)
 
     gst_app_src_push_buffer(GST_APP_SRC(source), picture);
     gst_app_src_end_of_stream(GST_APP_SRC(source));
-    gst_element_set_state(pipeline, GST_STATE_PLAYING);
-    GstMessage *end = gst_bus_timed_pop_filtered(bus, GST_CLOCK_TIME_NONE, GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
-    const gboolean ok = GST_MESSAGE_TYPE(end) == GST_MESSAGE_EOS || fail(path, "the picture cannot be written");
-
-    gst_element_set_state(pipeline, GST_STATE_NULL);
-    gst_message_unref(end);
-    gst_object_unref(bus);
+    const gboolean ok = run(pipeline, path);
     gst_object_unref(file);
     gst_object_unref(source);
     gst_object_unref(pipeline);

@@ -139,6 +139,8 @@ static gboolean render_clip(Synth *synth, const char *out)
     const gboolean ok = wait_for_end(pipeline);
     gst_element_set_state(pipeline, GST_STATE_NULL);
     gst_object_unref(pipeline);
+    if (!ok)
+        remove(out);
     return ok;
 }
 

@@ -47,7 +47,7 @@ typedef struct App {
     gboolean failed;
     gboolean terminal;       /* stderr is one: the progress line is overwritten */
     gint64 started_us;
-    gint frames;             /* atomic: counted in the streaming thread */
+    gint frames, reached_ms; /* given out; atomic: set in a streaming thread */
 } App;
 
 /* One line on stderr, and the end. For the main thread. */
@@ -151,8 +151,12 @@ static const char *muxer_for(const char *out)
 
 static GstPadProbeReturn count_frame(GstPad *pad, GstPadProbeInfo *info, gpointer data)
 {
-    (void)pad, (void)info;
-    g_atomic_int_inc(&((App *)data)->frames);
+    App *app = data;
+    const GstClockTime pts = GST_BUFFER_PTS(GST_PAD_PROBE_INFO_BUFFER(info));
+    (void)pad;
+    g_atomic_int_inc(&app->frames);
+    if (GST_CLOCK_TIME_IS_VALID(pts))
+        g_atomic_int_set(&app->reached_ms, (gint)(pts / GST_MSECOND));
     return GST_PAD_PROBE_OK;
 }
 
@@ -234,14 +238,15 @@ static gboolean on_signal(gpointer data)
 static gboolean show_progress(gpointer data)
 {
     App *app = data;
-    gint64 position = 0, duration = 0;
+    gint64 duration = 0;
     const int frames = g_atomic_int_get(&app->frames);
     const double seconds = (double)(g_get_monotonic_time() - app->started_us) / G_USEC_PER_SEC;
     char percent[16] = "";
 
-    if (frames > 0 && gst_element_query_duration(app->source, GST_FORMAT_TIME, &duration) && duration > 0 &&
-        gst_element_query_position(app->stabilizer, GST_FORMAT_TIME, &position))
-        g_snprintf(percent, sizeof percent, "%3.0f %%, ", MIN(100.0, 100.0 * (double)position / (double)duration));
+    if (frames > 0 && gst_element_query_duration(app->source, GST_FORMAT_TIME, &duration) && duration > 0) {
+        const double reached = (double)g_atomic_int_get(&app->reached_ms) * GST_MSECOND / (double)duration;
+        g_snprintf(percent, sizeof percent, "%3.0f %%, ", MIN(100.0, 100.0 * reached));
+    }
     g_printerr("%s%s%d frames, %.1f frames/s%s", app->terminal ? "\r" : "", percent, frames,
                seconds > 0 ? frames / seconds : 0.0, app->terminal ? "   " : "\n");
     return G_SOURCE_CONTINUE;
@@ -310,6 +315,7 @@ static void run(App *app)
     gst_element_set_state(app->pipeline, GST_STATE_PLAYING);
     g_main_loop_run(app->loop);
     if (!app->failed) {
+        g_atomic_int_set(&app->reached_ms, G_MAXINT); /* all of it */
         show_progress(app);
         g_printerr(app->terminal ? "\n" : "");
     }

@@ -9,9 +9,10 @@ top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$(realpath -m "${1:-$top/build}")
 overlay=$top/subprojects/packagefiles/osqp/meson.build
 
-# Megabytes that have to be free: for all packages on a bare Debian, and for the build.
+# Megabytes that have to be free: on a bare Debian some 470 packages, of which apt keeps the archives; and the build.
 packages_need=1500
-build_need=200
+archives_need=400
+build_need=100
 
 say() { echo "prepare: $*" >&2; }
 die() {
@@ -46,12 +47,11 @@ as_root() {
 }
 
 apt() {
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300 -o Acquire::Retries=2 "$@" \
-    </dev/null >&2
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300 -o Acquire::Retries=2 "$@" </dev/null
 }
 
 install_packages() {
-  local by_hand missing
+  local by_hand log missing
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     say "not a Debian system: the packages named in .ci/packages are taken to be there"
     return
@@ -60,17 +60,22 @@ install_packages() {
   [[ ${#missing[@]} -gt 0 ]] || return 0
 
   by_hand="apt-get install --no-install-recommends ${missing[*]}"
-  say "installing ${#missing[@]} missing packages: ${missing[*]}"
   if [[ $(id -u) -ne 0 ]]; then
     { command -v sudo >/dev/null && as_root true; } ||
       die "packages are missing, and there is no right to install them. As root: $by_hand"
   fi
   need_space /usr "$packages_need" "the packages"
-  need_space /var "$packages_need" "the packages"
+  need_space /var "$archives_need" "the packages"
+
+  say "installing what is missing, which may take some minutes: ${missing[*]}"
+  log=$(mktemp)
   # The lists may be absent or out of date: refreshed only when the first attempt fails.
-  apt install --no-install-recommends "${missing[@]}" ||
-    { apt update && apt install --no-install-recommends "${missing[@]}"; } ||
-    die "apt-get could not install them (see above; is there a network?). By hand, as root: $by_hand"
+  if ! apt install --no-install-recommends "${missing[@]}" >"$log" 2>&1 &&
+    ! { apt update && apt install --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+    sed -n 's/^[EW]: /  /p' "$log" | head -n 3 >&2
+    die "apt-get could not install them (no network?); all it said is in $log. By hand, as root: $by_hand"
+  fi
+  rm -f "$log"
 }
 
 # Meson lays our overlay over OSQP's source only when it unpacks it.
@@ -104,4 +109,4 @@ refresh_overlay
 mkdir -p "$build" 2>/dev/null || die "cannot write into ${build%/*}"
 [[ -f $build/build.ninja ]] || need_space "$build" "$build_need" "the build"
 configure
-ninja --quiet -C "$build" >&2 || die "the build failed (see above)"
+ninja --quiet -C "$build" | sed '/^ninja: no work to do/d' >&2 || die "the build failed (see above)"

@@ -4,7 +4,7 @@
 # usage: samples/stabilize.sh [OPTION...] [IN [OUT]]
 #   IN       a video; without it a shaky clip is rendered
 #   OUT      ends with .mp4, .m4v, .mov or .mkv; default: IN's name with -stabilized.mp4, in the current directory
-#   OPTION   a property of the element, such as --lambda=1 or --crop-ratio=0.85; --help lists them
+#   OPTION   a property of the element, such as --lambda 1 or --crop-ratio=0.85; --help lists them
 # BUILD_DIR in the environment: another build directory than build
 set -euo pipefail
 
@@ -18,8 +18,15 @@ die() {
 
 options=()
 while [[ ${1:-} == -* ]]; do
-  [[ $1 != -- ]] || { shift && break; }
-  options+=("$1")
+  case $1 in
+    --) shift && break ;;
+    --help | *=*) options+=("$1") ;;
+    *)
+      [[ $# -gt 1 ]] || die "$1: there is no value after it"
+      options+=("$1=$2")
+      shift
+      ;;
+  esac
   shift
 done
 [[ $# -le 2 ]] || die "too many arguments: [OPTION...] [IN [OUT]], and options as --name=value"
@@ -49,12 +56,14 @@ else
   name=${in##*/}
   out=${2:-${name%.*}-stabilized.mp4}
 fi
-picture=${out%.*}.png
+[[ $in != -* ]] || in=./$in
+[[ $out != -* ]] || out=./$out
+picture=${out%.*}-before-after.png
 
-"$build/samples/stabilize-file" "${options[@]}" -- "$in" "$out"
+"$build/samples/stabilize-file" "${options[@]}" "$in" "$out"
 
 echo "measuring" >&2
-result=$("$build/samples/measure-shake" --picture="$picture" -- "$in" "$out")
+result=$("$build/samples/measure-shake" --picture="$picture" "$in" "$out")
 before=$(sed -n '1s/.*: \([0-9.]* px\)$/\1/p' <<<"$result")
 after=$(sed -n '2s/.*: \([0-9.]* px\)$/\1/p' <<<"$result")
 cat <<END

@@ -38,7 +38,8 @@ echo "fetch-osqp: getting $file from the Python package index"
   --no-deps --no-build-isolation --no-binary "${name%%-*}" --require-hashes -r "$temporary/requirements.txt" \
   -d "$temporary" >"$temporary/log" 2>&1 </dev/null || {
   reason=$(sed -n 's/^ *ERROR: //p' "$temporary/log" | tail -n 1)
-  die "could not get $file (no network?): ${reason:-pip failed}. It can be put into $PWD/packagefiles by hand, too"
+  ! grep -q 'Retrying' "$temporary/log" || reason="the package index cannot be reached (no network?)"
+  die "could not get $file: ${reason:-pip failed}. It can be put into $PWD/packagefiles by hand, too"
 }
 hash_fits "$temporary/$file" || die "$file came with another sha256 than $hash: not used"
 mv -f "$temporary/$file" "$target"

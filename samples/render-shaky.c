@@ -31,7 +31,7 @@
     "audiotestsrc freq=330 volume=0.02 samplesperbuffer=1600 num-buffers=" G_STRINGIFY(FRAMES) " ! " \
     "audio/x-raw, rate=48000, channels=1 ! audioconvert ! avenc_aac ! queue ! mux."
 
-/* A walk along a wall: the shake of a hand, a pan, a trace of sensor noise and somebody who passes. */
+/* A walk along a wall: the shake of a hand, a slow pan and a trace of sensor noise. */
 static Synth *film_scene(void)
 {
     SynthConfig cfg = synth_defaults();
@@ -43,7 +43,6 @@ static Synth *film_scene(void)
     cfg.roll = 0.008;
     cfg.zoom = 0.004;
     cfg.noise = 1.5;
-    cfg.foreground = 0.08;
     return synth_new(&cfg);
 }
 

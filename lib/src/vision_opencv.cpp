@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The other side of vision.h: OpenCV. The only C++ file, and the only one that knows OpenCV.
+ *
+ * No exception leaves it, and none of OpenCV's globals (threads, random numbers) is touched. OpenCV may track points in
+ * parallel; each point is on its own, so the result does not depend on the number of threads.
+ */
+#include "vision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <vector>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+#include "log.h"
+
+namespace {
+
+/* Window and levels of Lucas-Kanade at 640 px: 15 px over 4 levels follow some 60 px a frame. */
+constexpr int kWindow = 15;
+constexpr int kLevels = 3;
+/* Corners weaker than this part of the strongest one are noise. */
+constexpr double kCornerQuality = 0.01;
+constexpr double kMinEigenvalue = 1e-4;
+
+const cv::Size window_size(kWindow, kWindow);
+
+} // namespace
+
+struct L1L2Vision {
+    L1L2VisionConfig cfg;
+    cv::Size size;
+    cv::Mat colour;                          /* downscaled, before it becomes grey */
+    cv::Mat grey, previous_grey;
+    std::vector<cv::Mat> pyramid, previous_pyramid;
+    int pictures = 0;                        /* taken since reset, at most 2 matter */
+    cv::Mat mask;
+    std::vector<cv::Point2f> from, to, back;
+    std::vector<uchar> found, found_back;
+    std::vector<float> error;
+};
+
+namespace {
+
+template <class Body>
+L1L2StabResult guard(const L1L2StabLogger *log, Body &&body) noexcept
+{
+    try {
+        body();
+        return L1L2STAB_OK;
+    } catch (const std::bad_alloc &) {
+        return L1L2STAB_ERR_NOMEM;
+    } catch (const cv::Exception &e) {
+        if (e.code == cv::Error::StsNoMem)
+            return L1L2STAB_ERR_NOMEM;
+        l1l2_log(log, L1L2STAB_LOG_ERROR, "OpenCV: %s", e.what());
+    } catch (const std::exception &e) {
+        l1l2_log(log, L1L2STAB_LOG_ERROR, "OpenCV: %s", e.what());
+    } catch (...) {
+        l1l2_log(log, L1L2STAB_LOG_ERROR, "OpenCV: unknown exception");
+    }
+    return L1L2STAB_ERR_BACKEND;
+}
+
+int grey_conversion(const L1L2VisionConfig &cfg)
+{
+    if (cfg.components == 4)
+        return cfg.luma == L1L2_LUMA_BGR ? cv::COLOR_BGRA2GRAY : cv::COLOR_RGBA2GRAY;
+    return cfg.luma == L1L2_LUMA_BGR ? cv::COLOR_BGR2GRAY : cv::COLOR_RGB2GRAY;
+}
+
+/* Downscaled by area, so that noise averages out and nothing aliases. */
+void scale_to_grey(L1L2Vision *v, const cv::Mat &frame)
+{
+    cv::Mat &scaled = v->cfg.components == 1 ? v->grey : v->colour;
+    if (frame.size() == v->size)
+        frame.copyTo(scaled);
+    else
+        cv::resize(frame, scaled, v->size, 0, 0, cv::INTER_AREA);
+    if (v->cfg.components != 1)
+        cv::cvtColor(v->colour, v->grey, grey_conversion(v->cfg));
+}
+
+bool inside(const L1L2Vision *v, cv::Point2f p)
+{
+    return p.x >= 0 && p.y >= 0 && p.x <= v->size.width - 1 && p.y <= v->size.height - 1;
+}
+
+void follow(L1L2Vision *v, bool forward)
+{
+    const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 20, 0.01);
+    if (forward)
+        cv::calcOpticalFlowPyrLK(v->previous_pyramid, v->pyramid, v->from, v->to, v->found, v->error, window_size,
+                                 kLevels, until, 0, kMinEigenvalue);
+    else
+        cv::calcOpticalFlowPyrLK(v->pyramid, v->previous_pyramid, v->to, v->back, v->found_back, v->error, window_size,
+                                 kLevels, until, 0, kMinEigenvalue);
+}
+
+} // namespace
+
+extern "C" {
+
+L1L2StabResult l1l2_vision_create(L1L2Vision **out, const L1L2VisionConfig *cfg)
+{
+    *out = nullptr;
+    return guard(cfg->log, [&] {
+        const double scale = std::min(1.0, double(cfg->analysis_size) / std::max(cfg->width, cfg->height));
+        *out = new L1L2Vision;
+        (*out)->cfg = *cfg;
+        (*out)->size = cv::Size(std::max(1, cvRound(cfg->width * scale)), std::max(1, cvRound(cfg->height * scale)));
+    });
+}
+
+void l1l2_vision_free(L1L2Vision *v)
+{
+    delete v;
+}
+
+void l1l2_vision_reset(L1L2Vision *v)
+{
+    v->pictures = 0;
+}
+
+void l1l2_vision_size(const L1L2Vision *v, int *width, int *height)
+{
+    *width = v->size.width;
+    *height = v->size.height;
+}
+
+L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t stride)
+{
+    return guard(v->cfg.log, [&] {
+        const int type = CV_8UC(v->cfg.components);
+        cv::swap(v->grey, v->previous_grey);
+        std::swap(v->pyramid, v->previous_pyramid);
+        if (stride > 0) {
+            /* The header over the caller's memory is only read from. */
+            scale_to_grey(v, cv::Mat(v->cfg.height, v->cfg.width, type, const_cast<uint8_t *>(data), size_t(stride)));
+        } else { /* bottom up: OpenCV's steps are positive, so the picture is taken upside down and turned over */
+            const uint8_t *last = data + stride * (v->cfg.height - 1);
+            scale_to_grey(v, cv::Mat(v->cfg.height, v->cfg.width, type, const_cast<uint8_t *>(last), size_t(-stride)));
+            cv::flip(v->grey, v->grey, 0);
+        }
+        cv::buildOpticalFlowPyramid(v->grey, v->pyramid, window_size, kLevels);
+        v->pictures = std::min(v->pictures + 1, 2);
+    });
+}
+
+L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int count, double min_distance,
+                                   L1L2Pixel *corners, int capacity, int *found)
+{
+    *found = 0;
+    if (v->pictures < 2 || capacity <= 0) /* OpenCV takes a capacity of 0 for none at all */
+        return L1L2STAB_OK;
+    return guard(v->cfg.log, [&] {
+        v->mask.create(v->size, CV_8U);
+        v->mask.setTo(255);
+        for (int i = 0; i < count; i++)
+            cv::circle(v->mask, cv::Point(cvRound(taken[i].x), cvRound(taken[i].y)), cvRound(min_distance),
+                       cv::Scalar(0), cv::FILLED);
+        cv::goodFeaturesToTrack(v->previous_grey, v->from, capacity, kCornerQuality, min_distance, v->mask);
+        *found = std::min(capacity, int(v->from.size()));
+        for (int i = 0; i < *found; i++)
+            corners[i] = {v->from[size_t(i)].x, v->from[size_t(i)].y};
+    });
+}
+
+L1L2StabResult l1l2_vision_track(L1L2Vision *v, const L1L2Pixel *from, L1L2Pixel *to, bool *ok, int count,
+                                 double max_return)
+{
+    std::fill(ok, ok + count, false);
+    if (v->pictures < 2 || count <= 0)
+        return L1L2STAB_OK;
+    return guard(v->cfg.log, [&] {
+        v->from.resize(size_t(count));
+        for (int i = 0; i < count; i++)
+            v->from[size_t(i)] = cv::Point2f(from[i].x, from[i].y);
+        follow(v, true);
+        follow(v, false);
+        for (int i = 0; i < count; i++) {
+            const size_t k = size_t(i);
+            const cv::Point2f away = v->back[k] - v->from[k];
+            to[i] = {v->to[k].x, v->to[k].y};
+            ok[i] = v->found[k] && v->found_back[k] && inside(v, v->to[k]) &&
+                    std::hypot(double(away.x), double(away.y)) <= max_return;
+        }
+    });
+}
+
+} // extern "C"

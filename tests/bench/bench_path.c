@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The path solver alone, on shaky pans: ms a window for the predictor with its own certificate, with OSQP's check, and for
+ * OSQP alone; by length of the window, and for sliding windows.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "clock.h"
+#include "path_solver.h"
+#include "rng.h"
+
+enum { ROUNDS = 40 };
+
+static double uniform(L1L2Rng *rng, double low, double high)
+{
+    return low + (high - low) * (l1l2_rng_next(rng) / 4294967296.0);
+}
+
+static void describe(L1L2PathProblem *p, int count, uint64_t seed)
+{
+    L1L2Rng rng = l1l2_rng_seeded(seed);
+    const L1L2Crop crop = l1l2_crop_make(640, 360, seed % 2 ? 0.8 : 0.9);
+    const double shake = (1 + seed % 5) * 0.003;
+    p->count = count;
+    p->history = 3;
+    for (int i = 0; i < L1L2_HISTORY; i++)
+        p->past[i][0] = 0.5, p->past[i][2] = 0.001 * (i - 3);
+    for (int t = 0; t < count; t++) {
+        const double roll = uniform(&rng, -shake, shake);
+        const L1L2Mat camera = l1l2_mat_similarity(
+            cos(roll), sin(roll), 0.0015 * t + 0.03 * sin(t / 25.0) + uniform(&rng, -shake, shake),
+            0.02 * sin(t / 40.0) + uniform(&rng, -shake, shake));
+        l1l2_path_problem_set(p, t, &camera, 0.5, &crop);
+    }
+}
+
+static int ascending(const void *a, const void *b)
+{
+    return *(const double *)a < *(const double *)b ? -1 : *(const double *)a > *(const double *)b;
+}
+
+static void bench(const char *name, int count, L1L2SolverChoice choice, int rounds)
+{
+    L1L2PathProblem *p = l1l2_path_problem_create(count);
+    L1L2PathSolver *solver = l1l2_path_solver_create(count, choice);
+    double(*q)[L1L2_DIM] = calloc((size_t)count, sizeof *q), ms[ROUNDS];
+    int converged = 0, first = 0;
+    for (int i = 0; i < rounds; i++) {
+        describe(p, count, (uint64_t)i);
+        const int64_t start_ns = l1l2_clock_ns();
+        const L1L2SolverReport report = l1l2_path_solver_solve(solver, p, q);
+        ms[i] = 1e-6 * (double)(l1l2_clock_ns() - start_ns);
+        converged += report.converged;
+        first += report.osqp_iterations == 1;
+    }
+    qsort(ms, (size_t)rounds, sizeof *ms, ascending);
+    printf("%-28s %4d  %8.2f %8.2f   %3d/%-3d  %3d\n", name, count, ms[rounds / 2], ms[rounds - 1], converged, rounds,
+           first);
+    fflush(stdout);
+    l1l2_path_solver_free(solver);
+    l1l2_path_problem_free(p);
+    free(q);
+}
+
+int main(void)
+{
+    printf("                                N    median    worst   arrived  OSQP accepted at its first check\n");
+    static const int counts[] = {30, 75, 150, 300, 450, 900};
+    for (int i = 0; i < 6; i++)
+        bench("predictor", counts[i], L1L2_SOLVER_PREDICTOR, ROUNDS);
+    for (int i = 0; i < 6; i++)
+        bench("predictor, checked by OSQP", counts[i], L1L2_SOLVER_BOTH, ROUNDS);
+    bench("OSQP alone", 150, L1L2_SOLVER_OSQP, 5);
+    return EXIT_SUCCESS;
+}

@@ -53,7 +53,7 @@ static bool overlap_fits(const L1L2StabConfig *cfg)
         return true;
     if (most < 3)
         l1l2_log(&cfg->logger, L1L2STAB_LOG_ERROR,
-                 "window is %d: join=blend needs at least 6 frames, for an overlap of at least 3 and at most half of it",
+                 "window is %d: join=blend needs at least 6 frames, since an overlap of 3 may be half of it at most",
                  cfg->window);
     else
         l1l2_log(&cfg->logger, L1L2STAB_LOG_ERROR,

@@ -94,8 +94,8 @@ void l1l2_motion_reset(L1L2Motion *m)
     start_path(m);
 }
 
-/* From the tracked picture's pixels, whose centres are integers, to diagonals from the frame's centre. The two axes have
- * scales of their own, since the tracked picture's sides are rounded. */
+/* From the tracked picture's pixels, whose centres are integers, to diagonals from the frame's centre. The two axes
+ * have scales of their own, since the tracked picture's sides are rounded. */
 static L1L2Point to_diagonals(const L1L2Motion *m, L1L2Pixel p)
 {
     return (L1L2Point){((p.x + 0.5) * m->cfg.width / m->width - 0.5 * m->cfg.width) / m->diagonal_px,

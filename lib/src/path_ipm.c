@@ -52,8 +52,8 @@ L1L2PathIpm *l1l2_path_ipm_create(int capacity)
     ipm->slack = l1l2_mem_new(terms, sizeof *ipm->slack);
     ipm->term_dual = l1l2_mem_new(terms, sizeof *ipm->term_dual);
     ipm->crop_dual = l1l2_mem_new(n, sizeof *ipm->crop_dual);
-    if (ipm->term && ipm->crop && ipm->band && ipm->rhs && ipm->gradient && ipm->diagonal && ipm->q && ipm->best_q && ipm->slack && ipm->term_dual &&
-        ipm->crop_dual)
+    if (ipm->term && ipm->crop && ipm->band && ipm->rhs && ipm->gradient && ipm->diagonal && ipm->q && ipm->best_q &&
+        ipm->slack && ipm->term_dual && ipm->crop_dual)
         return ipm;
     l1l2_path_ipm_free(ipm);
     return NULL;

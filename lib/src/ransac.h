@@ -17,7 +17,8 @@ typedef struct L1L2Pair {
 /* The map `from` -> `to` with the most pairs within `threshold` of it, refitted on them.
  * inlier: `count` flags out. Any unit. Returns the number of inliers; 0, and *fit the identity, where no model exists:
  * fewer than two pairs, all points in one place, nothing finite. */
-int l1l2_ransac_similarity(const L1L2Pair *pairs, int count, double threshold, L1L2Rng *rng, bool *inlier, L1L2Mat *fit);
+int l1l2_ransac_similarity(const L1L2Pair *pairs, int count, double threshold, L1L2Rng *rng, bool *inlier,
+                           L1L2Mat *fit);
 
 /* The same for translations; one pair suffices. */
 int l1l2_ransac_translation(const L1L2Pair *pairs, int count, double threshold, L1L2Rng *rng, bool *inlier,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The path solver alone, on shaky pans: ms a window for the predictor with its own certificate, with OSQP's check, and for
- * OSQP alone; by length of the window, and for sliding windows.
+ * The path solver alone, on shaky pans: ms a window for the predictor with its own certificate, with OSQP's check, and
+ * for OSQP alone; by length of the window.
  */
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <stdio.h>
 #include <string.h>
 
 #include "checkx.h"
@@ -155,6 +156,7 @@ int main(void)
 {
     Suite *suite = suite_create("config");
     TCase *tcase = tcase_create("config");
+    tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, the_defaults_need_format_and_size_alone);
     tcase_add_test(tcase, overlap_zero_is_chosen_by_join_and_fits_every_window);
     tcase_add_test(tcase, every_field_out_of_range_is_refused_by_name);

@@ -91,6 +91,7 @@ int main(void)
 {
     Suite *suite = suite_create("crop");
     TCase *tcase = tcase_create("crop");
+    tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, the_frame_has_a_diagonal_of_one);
     tcase_add_test(tcase, the_rows_say_what_the_definition_says);
     tcase_add_test(tcase, what_is_admitted_is_inside_and_what_was_inside_is_unchanged);

@@ -69,7 +69,8 @@ START_TEST(a_running_instance_takes_no_memory)
     SynthConfig scene = synth_defaults();
     scene.width = cfg.width, scene.height = cfg.height;
     Synth *synth = synth_new(&scene);
-    SynthPicture in = synth_picture_new(cfg.format, cfg.width, cfg.height), out = synth_picture_new(cfg.format, 160, 96);
+    SynthPicture in = synth_picture_new(cfg.format, cfg.width, cfg.height);
+    SynthPicture out = synth_picture_new(cfg.format, cfg.width, cfg.height);
     L1L2StabFrame frame = {0}, picture = {0};
     memcpy(frame.data, in.data, sizeof frame.data);
     memcpy(frame.stride, in.stride, sizeof frame.stride);
@@ -99,6 +100,7 @@ int main(void)
 {
     Suite *suite = suite_create("oom");
     TCase *tcase = tcase_create("oom");
+    tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, create_survives_the_failure_of_any_allocation);
     tcase_add_test(tcase, a_running_instance_takes_no_memory);
     suite_add_tcase(suite, tcase);

@@ -57,7 +57,7 @@ static double uniform(L1L2Rng *rng, double low, double high)
     return low + (high - low) * (l1l2_rng_next(rng) / 4294967296.0);
 }
 
-/* A pan that wanders, with a shake: each frame's pose is the pan's plus noise; F from pose to pose. Pixels at 640x360. */
+/* A pan that wanders, with a shake: each frame's pose is the pan's plus noise; F from pose to pose. Px at 640x360. */
 static Run *wandering_run(int frames, double pan_px, double wander_px, double shake_px, uint64_t seed)
 {
     Run *r = new_run(frames);
@@ -86,7 +86,7 @@ static double speed_px(const Run *r, int t)
     return r->out[t].S.m[2] * diagonal_px;
 }
 
-/* The largest third difference of the smooth path at the joins of windows, and elsewhere, px/frame^3: from the steps S. */
+/* The largest third difference of the smooth path at the joins of windows, and elsewhere, px/frame^3. */
 static void third_differences(const Run *r, int every, double *at_joins, double *inside)
 {
     *at_joins = *inside = 0.0;

@@ -146,6 +146,7 @@ int main(void)
 {
     Suite *suite = suite_create("path_qp");
     TCase *tcase = tcase_create("path_qp");
+    tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, columns_and_rows_are_bijections);
     tcase_add_test(tcase, terms_reach_no_further_back_than_the_history);
     tcase_add_test(tcase, columns_are_sorted_and_within_their_room);

@@ -31,7 +31,7 @@ def synthetic(n, rng, shake_px, pan_px, roll, zoom, width=640, height=360):
 
     def shake(rms):
         kernel = np.exp(-np.arange(-6, 7) ** 2 / 8.0)
-        return rms * np.convolve(rng.normal(size=n), kernel / np.sqrt((kernel ** 2).sum()), 'same')
+        return rms * np.convolve(rng.normal(size=n), kernel / np.sqrt((kernel ** 2).sum()), 'same')[:n]
 
     x = pan_px * t + 20 * np.sin(t / 40 + rng.uniform(0, 6)) + shake(shake_px)
     y = 8 * np.sin(t / 55 + rng.uniform(0, 6)) + shake(shake_px)
@@ -55,7 +55,8 @@ def windows():
         n = (FULL, FULL, 90, 40, 12)[i % 5] if i < 15 else (1, 2, 3, 4, 5)[i - 15]
         motions = synthetic(n, rng, *((2, 0.5, 0.002, 0.001), (6, 1, 0.01, 0.003), (12, 3, 0.02, 0.01),
                                       (30, -6, 0.04, 0.02))[i % 4])
-        yield f'synthetic-{i}', motions, past_of(motions, (0, 3, 3, 1, 2)[i % 5], rng), (0.9, 0.8)[i % 2], 640, 360
+        past = past_of(motions, (0, 3, 3, 1, 2)[i % 5], rng)
+        yield f'synthetic-{i}', motions, past, (0.9, 0.8)[i % 2], 640, 360
     here = os.path.dirname(os.path.abspath(__file__))
     for path in sorted(glob.glob(os.path.join(here, 'motion', '*.txt'))):
         with open(path) as file:
@@ -64,7 +65,8 @@ def windows():
         name = os.path.basename(path)[:-4]
         for k, first in enumerate((0, len(motions) // 3, max(0, len(motions) - FULL))):
             part = motions[first:first + FULL]
-            yield f'{name}-{first}', part, past_of(part, 0 if first == 0 else 3, rng), (0.8, 0.9, 0.95)[k], width, height
+            past = past_of(part, 0 if first == 0 else 3, rng)
+            yield f'{name}-{first}', part, past, (0.8, 0.9, 0.95)[k], width, height
 
 
 def numbers(values):

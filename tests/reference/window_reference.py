@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Independent solution of the window problem (Qu & Song 2013, eq. 4 to 7), from the paper and nothing else.
 
-Other variables than the library's (the update transforms B_t, eq. 6, instead of the paths P_t), another solver (Clarabel;
-HiGHS where lambda is 0) and general sparse matrices. Unit: the frame's diagonal; p = (a, b, x, y), the linear part at
-half weight in both norms. Needs numpy, scipy and clarabel; not needed to build or test the library.
+Other variables than the library's (the update transforms B_t, eq. 6, instead of the paths P_t), another solver
+(Clarabel; HiGHS where lambda is 0) and general sparse matrices. Unit: the frame's diagonal; p = (a, b, x, y), the
+linear part at half weight in both norms. Needs numpy, scipy and clarabel; not needed to build or test the library.
 """
 import numpy as np
 import scipy.optimize

@@ -66,9 +66,10 @@ echo "measuring" >&2
 result=$("$build/samples/measure-shake" --picture="$picture" "$in" "$out")
 before=$(sed -n '1s/.*: \([0-9.]* px\)$/\1/p' <<<"$result")
 after=$(sed -n '2s/.*: \([0-9.]* px\)$/\1/p' <<<"$result")
+left=$(sed -n 's/^ratio: //p' <<<"$result" | LC_ALL=C awk '{ printf ": %.1f %% of it is left", 100 * $1 }')
 cat <<END
 input    $in
 output   $out
 picture  $picture (slit scan, before above after)
-shake    $before before, $after after (rms jump of a frame's corner, at 640 px width)
+shake    $before before, $after after$left (rms jump of a frame's corner, at 640 px width)
 END

@@ -44,7 +44,7 @@ typedef struct Video {
     L1L2Stab *stab;
     GstVideoInfo info;
     GByteArray *slits; /* the middle columns, one frame after the other */
-    int frames;
+    int frames, lost;  /* of these, frames whose motion could not be measured */
     Corners velocity;  /* of the frame before */
     gboolean moving;   /* velocity is set */
     double sum;        /* of the squared accelerations, over corners and frames */
@@ -100,6 +100,7 @@ static Corners corner_velocity(const double F[9], double width, double height)
 
 static void add_motion(Video *video, const L1L2StabInfo *info)
 {
+    video->lost += info->flags & L1L2STAB_INFO_MOTION_LOST ? 1 : 0;
     if (info->flags & (L1L2STAB_INFO_PATH_START | L1L2STAB_INFO_MOTION_LOST)) {
         video->moving = FALSE;
         return;
@@ -328,6 +329,8 @@ int main(int argc, char **argv)
         ok = measure(&videos[i]);
         if (ok)
             g_print("%s: %.3f px\n", videos[i].path, shake_of(&videos[i]));
+        if (ok && videos[i].lost > 0)
+            g_printerr("%s: %d of %d frames could not be measured\n", videos[i].path, videos[i].lost, videos[i].frames);
     }
     if (ok && argc == 3 && shake_of(&videos[0]) > 0)
         g_print("ratio: %.4f\n", shake_of(&videos[1]) / shake_of(&videos[0]));

@@ -229,8 +229,8 @@ gst_l1l2_stab_set_caps (GstBaseTransform * trans, GstCaps * in_caps,
   L1L2StabConfig settings;
   GstVideoInfo in_info, out_info;
 
-  if (!gst_video_info_from_caps (&in_info, in_caps)
-      || !gst_video_info_from_caps (&out_info, out_caps))
+  if (!gst_l1l2_stab_glue_parse_caps (&in_info, in_caps)
+      || !gst_l1l2_stab_glue_parse_caps (&out_info, out_caps))
     return FALSE;
 
   gst_l1l2_stab_output_drain (trans, &self->stream);

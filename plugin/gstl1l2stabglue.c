@@ -50,6 +50,20 @@ gst_l1l2_stab_glue_logger (L1L2StabLogger * logger, GstL1L2StabLog * log)
   }
 }
 
+gboolean
+gst_l1l2_stab_glue_parse_caps (GstVideoInfo * info, const GstCaps * caps)
+{
+  const gchar *site;
+
+  if (!gst_video_info_from_caps (info, caps))
+    return FALSE;
+  site = gst_structure_get_string (gst_caps_get_structure (caps, 0),
+      "chroma-site");
+  GST_VIDEO_INFO_CHROMA_SITE (info) = site ?
+      gst_video_chroma_site_from_string (site) : GST_VIDEO_CHROMA_SITE_UNKNOWN;
+  return TRUE;
+}
+
 static L1L2StabFormat
 format_from_video (GstVideoFormat format)
 {

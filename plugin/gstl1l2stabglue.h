@@ -23,6 +23,11 @@ typedef struct
  * earlier one is forgotten. */
 void gst_l1l2_stab_glue_logger (L1L2StabLogger * logger, GstL1L2StabLog * log);
 
+/* As gst_video_info_from_caps(), but the chroma site is what the caps say, or UNKNOWN: 1.22 puts a guess in its place
+ * when the caps have no colorimetry. */
+gboolean gst_l1l2_stab_glue_parse_caps (GstVideoInfo * info,
+    const GstCaps * caps);
+
 /* Fills format, size, frame rate and chroma site, and nothing else. */
 void gst_l1l2_stab_glue_config (L1L2StabConfig * config,
     const GstVideoInfo * info);

@@ -53,7 +53,7 @@ within() {
 "$render_shaky" 'a clip.mp4' truth.txt
 [ "$(grep -vc '^#' truth.txt)" -eq 300 ] || fail "truth.txt has not one line a frame"
 
-"$stabilize_file" --lambda=0.5 'a clip.mp4' 'steady clip.mp4' 2>said
+"$stabilize_file" --lambda=0.5 'a clip.mp4' 'steady clip.mp4' 2>said || fail "$(cat said)"
 grep -q '100 %, 300 frames' said || fail "not all frames came out: $(cat said)"
 [ ! -e 'steady clip.mp4.part' ] || fail "a half-written file is left"
 grep -aq mp4a 'steady clip.mp4' || fail "the sound is lost"

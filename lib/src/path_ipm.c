@@ -11,9 +11,9 @@
 /* Typical distance of a slack from its bound at the start, diagonals: the size of a shake. */
 static const double initial_slack = 1e-2;
 static const double step_fraction = 0.995; /* of the way to the nearest bound */
-/* Of the bound on the objective's distance from the optimum, absolute; objectives are about 0.01 to 10. */
-static const double bound_goal = 1e-13;  /* nearer than this, double precision gives nothing more */
-static const double bound_enough = 1e-9; /* to be called the optimum */
+/* Of the bound on the objective's distance from the optimum; objectives are about 0.01 to 10. */
+static const double bound_goal = 1e-13; /* nearer than this, double precision gives nothing more */
+static const double enough_absolute = 1e-9, enough_relative = 1e-7; /* to be called the optimum */
 static const int max_iterations = 60;
 
 /* Two inequalities around one linear form: s > 0 their slacks, y > 0 their duals. Side 0 bounds v from above. */
@@ -381,7 +381,7 @@ L1L2PathIpmReport l1l2_path_ipm_solve(L1L2PathIpm *ipm, const L1L2PathProblem *p
         const double gap = gap_after(ipm->term, ipm->terms, 0.0) + gap_after(ipm->crop, ipm->crops, 0.0);
         const double bound = gap + stationarity(ipm, p, ipm->gradient);
         if (bound < best.bound) {
-            best = (L1L2PathIpmReport){bound <= bound_enough, iteration, bound};
+            best = (L1L2PathIpmReport){.iterations = iteration, .bound = bound};
             since_best = 0;
             keep(ipm, p);
         }
@@ -390,5 +390,7 @@ L1L2PathIpmReport l1l2_path_ipm_solve(L1L2PathIpm *ipm, const L1L2PathProblem *p
             break;
     }
     *point = (L1L2PathPoint){ipm->best_q, ipm->slack, ipm->term_dual, ipm->crop_dual};
+    const double objective = l1l2_path_objective(p, (const double(*)[L1L2_DIM])point->q);
+    best.converged = best.bound <= enough_absolute + enough_relative * objective;
     return best;
 }

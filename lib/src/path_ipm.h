@@ -20,7 +20,7 @@
 typedef struct L1L2PathIpm L1L2PathIpm;
 
 typedef struct L1L2PathIpmReport {
-    bool converged; /* bound <= 1e-9 */
+    bool converged; /* bound <= 1e-9 + 1e-7 of the objective */
     int iterations;
     double bound;   /* the objective is at most this far above its optimum */
 } L1L2PathIpmReport;

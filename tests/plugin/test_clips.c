@@ -54,13 +54,14 @@ run_to_end (GstElement * pipeline, const gchar * what)
   gst_element_set_state (pipeline, GST_STATE_NULL);
 }
 
+/* What a fakesink at the end of the pipeline sees. */
 static Frames
-frames_of (const gchar * path)
+frames_at_the_end (const gchar * path, const gchar * elements)
 {
   Frames frames = { g_array_new (FALSE, FALSE, sizeof (GstClockTime)), 0, 0 };
-  GstElement *pipeline =
-      gst_parse_launch ("filesrc name=src ! decodebin ! video/x-raw ! "
-      "fakesink name=sink signal-handoffs=true", NULL);
+  gchar *launch = g_strdup_printf ("filesrc name=src ! decodebin ! %s ! "
+      "fakesink name=sink signal-handoffs=true", elements);
+  GstElement *pipeline = gst_parse_launch (launch, NULL);
   GstElement *src = gst_bin_get_by_name (GST_BIN (pipeline), "src");
   GstElement *sink = gst_bin_get_by_name (GST_BIN (pipeline), "sink");
 
@@ -70,51 +71,73 @@ frames_of (const gchar * path)
   gst_object_unref (src);
   gst_object_unref (sink);
   gst_object_unref (pipeline);
+  g_free (launch);
   return frames;
 }
 
-GST_START_TEST (the_readmes_pipeline_keeps_every_frame_size_and_timestamp)
+/* What a player sees of the file that the elements make: it is muxed, and
+ * decoded again. */
+static Frames
+frames_of_file (const gchar * path, const gchar * elements)
 {
-  const gchar *in = g_ptr_array_index (clips, __i__);
   gchar *dir = g_dir_make_tmp ("l1l2stab-clips-XXXXXX", NULL);
   gchar *out = g_build_filename (dir, "out.mp4", NULL);
-  GstElement *pipeline =
-      gst_parse_launch ("filesrc name=src ! decodebin ! l1l2stab lambda=0.5 ! "
-      "x264enc ! mp4mux ! filesink name=sink", NULL);
+  gchar *launch = g_strdup_printf ("filesrc name=src ! decodebin ! %s ! "
+      "mp4mux ! filesink name=sink", elements);
+  GstElement *pipeline = gst_parse_launch (launch, NULL);
   GstElement *src = gst_bin_get_by_name (GST_BIN (pipeline), "src");
   GstElement *sink = gst_bin_get_by_name (GST_BIN (pipeline), "sink");
-  Frames before, after;
+  Frames frames;
 
-  g_object_set (src, "location", in, NULL);
+  g_object_set (src, "location", path, NULL);
   g_object_set (sink, "location", out, NULL);
-  run_to_end (pipeline, in);
+  run_to_end (pipeline, path);
   gst_object_unref (src);
   gst_object_unref (sink);
   gst_object_unref (pipeline);
-
-  before = frames_of (in);
-  after = frames_of (out);
-  fail_unless (before.pts->len > 0, "%s: no frames", in);
-  fail_unless_equals_int (after.pts->len, before.pts->len);
-  fail_unless_equals_int (after.width, before.width);
-  fail_unless_equals_int (after.height, before.height);
-  for (guint i = 0; i < before.pts->len; i++) {
-    /* From the first frame on: containers start where they like, and
-     * count in ticks of a millisecond or less. */
-    const GstClockTimeDiff a = g_array_index (before.pts, GstClockTime, i) -
-        g_array_index (before.pts, GstClockTime, 0);
-    const GstClockTimeDiff b = g_array_index (after.pts, GstClockTime, i) -
-        g_array_index (after.pts, GstClockTime, 0);
-    fail_unless (ABS (a - b) <= GST_MSECOND,
-        "%s, frame %u: %" G_GINT64_FORMAT " ns in, %" G_GINT64_FORMAT " ns out",
-        in, i, a, b);
-  }
-  g_array_unref (before.pts);
-  g_array_unref (after.pts);
+  g_free (launch);
+  frames = frames_at_the_end (out, "video/x-raw");
   g_remove (out);
   g_rmdir (dir);
   g_free (out);
   g_free (dir);
+  return frames;
+}
+
+static void
+assert_same (const gchar * what, Frames * before, Frames * after)
+{
+  fail_unless (before->pts->len > 0, "%s: no frames", what);
+  fail_unless_equals_int (after->pts->len, before->pts->len);
+  fail_unless_equals_int (after->width, before->width);
+  fail_unless_equals_int (after->height, before->height);
+  for (guint i = 0; i < before->pts->len; i++)
+    fail_unless_equals_clocktime (g_array_index (after->pts, GstClockTime, i),
+        g_array_index (before->pts, GstClockTime, i));
+  g_array_unref (before->pts);
+  g_array_unref (after->pts);
+}
+
+GST_START_TEST (every_frame_comes_out_with_its_timestamp)
+{
+  const gchar *in = g_ptr_array_index (clips, __i__);
+  Frames before = frames_at_the_end (in, "video/x-raw");
+  Frames after = frames_at_the_end (in, "l1l2stab lambda=0.5");
+
+  assert_same (in, &before, &after);
+}
+
+GST_END_TEST;
+
+/* Against the same file made without the element: where encoder and muxer
+ * lose something of an odd clip themselves, that is theirs. */
+GST_START_TEST (the_readmes_pipeline_makes_a_file_that_plays_like_its_input)
+{
+  const gchar *in = g_ptr_array_index (clips, __i__);
+  Frames before = frames_of_file (in, "x264enc");
+  Frames after = frames_of_file (in, "l1l2stab lambda=0.5 ! x264enc");
+
+  assert_same (in, &before, &after);
 }
 
 GST_END_TEST;
@@ -167,6 +190,37 @@ unmap_frame (gpointer frame)
   g_free (frame);
 }
 
+static L1L2Stab *
+stabilizer_for (const GstVideoInfo * video)
+{
+  L1L2StabConfig cfg;
+  L1L2Stab *s;
+
+  l1l2stab_config_init (&cfg, sizeof cfg);
+  cfg.format = L1L2STAB_FORMAT_GRAY8;
+  cfg.width = video->width;
+  cfg.height = video->height;
+  /* Some files say 90000: the clock of their timestamps. */
+  cfg.frame_rate = (gdouble) video->fps_n / video->fps_d;
+  if (cfg.frame_rate > 1000.0)
+    cfg.frame_rate = 0.0;
+  fail_unless_equals_int (l1l2stab_create (&s, &cfg), L1L2STAB_OK);
+  return s;
+}
+
+static void
+push_sample (L1L2Stab * s, const GstVideoInfo * video, GstSample * sample)
+{
+  GstVideoFrame *mapped = g_new0 (GstVideoFrame, 1);
+  L1L2StabFrame frame = {.opaque = mapped,.release = unmap_frame };
+
+  fail_unless (gst_video_frame_map (mapped, video,
+          gst_sample_get_buffer (sample), GST_MAP_READ));
+  frame.data[0] = GST_VIDEO_FRAME_PLANE_DATA (mapped, 0);
+  frame.stride[0] = GST_VIDEO_FRAME_PLANE_STRIDE (mapped, 0);
+  fail_unless_equals_int (l1l2stab_push (s, &frame), L1L2STAB_OK);
+}
+
 GST_START_TEST (no_clip_gets_shakier_and_no_pixel_is_from_outside)
 {
   const gchar *in = g_ptr_array_index (clips, __i__);
@@ -177,7 +231,6 @@ GST_START_TEST (no_clip_gets_shakier_and_no_pixel_is_from_outside)
   GstElement *sink = gst_bin_get_by_name (GST_BIN (pipeline), "sink");
   GstSample *sample;
   GstVideoInfo video;
-  L1L2StabConfig cfg;
   L1L2Stab *s = NULL;
   L1L2StabInfo info;
   L1L2StabResult result = L1L2STAB_OK;
@@ -189,26 +242,10 @@ GST_START_TEST (no_clip_gets_shakier_and_no_pixel_is_from_outside)
   do {
     sample = gst_app_sink_pull_sample (GST_APP_SINK (sink));
     if (sample) {
-      GstVideoFrame *mapped = g_new0 (GstVideoFrame, 1);
-      L1L2StabFrame frame = {.pts = 0};
-
       gst_video_info_from_caps (&video, gst_sample_get_caps (sample));
-      fail_unless (gst_video_frame_map (mapped, &video,
-              gst_sample_get_buffer (sample), GST_MAP_READ));
+      s = s ? s : stabilizer_for (&video);
+      push_sample (s, &video, sample);
       gst_sample_unref (sample);
-      if (!s) {
-        l1l2stab_config_init (&cfg, sizeof cfg);
-        cfg.format = L1L2STAB_FORMAT_GRAY8;
-        cfg.width = video.width;
-        cfg.height = video.height;
-        cfg.frame_rate = (gdouble) video.fps_n / video.fps_d;
-        fail_unless_equals_int (l1l2stab_create (&s, &cfg), L1L2STAB_OK);
-      }
-      frame.data[0] = GST_VIDEO_FRAME_PLANE_DATA (mapped, 0);
-      frame.stride[0] = GST_VIDEO_FRAME_PLANE_STRIDE (mapped, 0);
-      frame.opaque = mapped;
-      frame.release = unmap_frame;
-      fail_unless_equals_int (l1l2stab_push (s, &frame), L1L2STAB_OK);
     } else {
       fail_unless (s != NULL, "%s: no frames", in);
       l1l2stab_finish (s);
@@ -240,8 +277,11 @@ clips_suite (void)
   TCase *tcase = tcase_create ("clips");
 
   tcase_set_timeout (tcase, 600);
+  tcase_add_loop_test (tcase, every_frame_comes_out_with_its_timestamp, 0,
+      clips->len);
   tcase_add_loop_test (tcase,
-      the_readmes_pipeline_keeps_every_frame_size_and_timestamp, 0, clips->len);
+      the_readmes_pipeline_makes_a_file_that_plays_like_its_input, 0,
+      clips->len);
   tcase_add_loop_test (tcase, no_clip_gets_shakier_and_no_pixel_is_from_outside,
       0, clips->len);
   suite_add_tcase (suite, tcase);

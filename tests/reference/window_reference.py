@@ -96,10 +96,12 @@ def solve(motions, past, lam, crop, width, height):
     b = np.concatenate([-d, d, h])
     cost = np.concatenate([2 * lam * (L.T @ l), np.ones(terms)])
     if lam == 0:
-        result = scipy.optimize.linprog(cost, A_ub=A.tocsc(), b_ub=b, bounds=(None, None), method='highs-ipm',
-                                        options={'primal_feasibility_tolerance': 1e-10,
-                                                 'dual_feasibility_tolerance': 1e-10,
-                                                 'ipm_optimality_tolerance': 1e-12})
+        for method in ('highs-ipm', 'highs-ds'):
+            result = scipy.optimize.linprog(cost, A_ub=A.tocsc(), b_ub=b, bounds=(None, None), method=method,
+                                            options={'primal_feasibility_tolerance': 1e-10,
+                                                     'dual_feasibility_tolerance': 1e-10})
+            if result.status == 0:
+                break
         assert result.status == 0, result.message
         z = result.x
     else:

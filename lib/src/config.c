@@ -30,6 +30,7 @@ void l1l2stab_config_init(L1L2StabConfig *cfg, size_t struct_size)
         .analysis_size = 640,
         .seed = 1,
         .logger = {.max_level = L1L2STAB_LOG_INFO},
+        .weights = {1.0, 1.0, 1.0},
     };
     if (!cfg || struct_size < sizeof cfg->struct_size)
         return;
@@ -43,6 +44,17 @@ static bool in_range(const L1L2StabConfig *cfg, const char *name, double value, 
         return true;
     l1l2_log(&cfg->logger, L1L2STAB_LOG_ERROR, "%s is %g: choose a value from %g to %g", name, value, least, most);
     return false;
+}
+
+static bool weights_fit(const L1L2StabConfig *cfg)
+{
+    for (int i = 0; i < 3; i++)
+        if (!(cfg->weights[i] > 0.0 && cfg->weights[i] <= 1000.0)) {
+            l1l2_log(&cfg->logger, L1L2STAB_LOG_ERROR, "weights[%d] is %g: choose a value above 0, up to 1000", i,
+                     cfg->weights[i]);
+            return false;
+        }
+    return true;
 }
 
 static bool overlap_fits(const L1L2StabConfig *cfg)
@@ -62,19 +74,25 @@ static bool overlap_fits(const L1L2StabConfig *cfg)
     return false;
 }
 
+bool l1l2_config_check_knobs(const L1L2StabConfig *cfg)
+{
+    return in_range(cfg, "lambda", cfg->lambda, 0, 1000) && in_range(cfg, "crop_ratio", cfg->crop_ratio, 0.5, 0.99);
+}
+
 static bool valid(const L1L2StabConfig *cfg)
 {
     return in_range(cfg, "width", cfg->width, 16, 16384) && in_range(cfg, "height", cfg->height, 16, 16384) &&
            in_range(cfg, "frame_rate", cfg->frame_rate, 0, 1000) &&
            in_range(cfg, "chroma_site", cfg->chroma_site, L1L2STAB_CHROMA_SITE_LEFT, L1L2STAB_CHROMA_SITE_TOP_LEFT) &&
-           in_range(cfg, "lambda", cfg->lambda, 0, 1000) && in_range(cfg, "crop_ratio", cfg->crop_ratio, 0.5, 0.99) &&
-           in_range(cfg, "window", cfg->window, 4, 900) &&
+           l1l2_config_check_knobs(cfg) && in_range(cfg, "window", cfg->window, 4, 900) &&
            in_range(cfg, "join", cfg->join, L1L2STAB_JOIN_CONTINUOUS, L1L2STAB_JOIN_BLEND) &&
            in_range(cfg, "interpolation", cfg->interpolation, L1L2STAB_INTERPOLATION_BILINEAR,
                     L1L2STAB_INTERPOLATION_LANCZOS) &&
            in_range(cfg, "output_size", cfg->output_size, L1L2STAB_OUTPUT_SIZE_INPUT, L1L2STAB_OUTPUT_SIZE_CROP) &&
            in_range(cfg, "analysis_size", cfg->analysis_size, 128, 4096) &&
-           in_range(cfg, "threads", cfg->threads, 0, 64) && overlap_fits(cfg);
+           in_range(cfg, "threads", cfg->threads, 0, 64) &&
+           in_range(cfg, "solver", cfg->solver, L1L2STAB_SOLVER_AUTO, L1L2STAB_SOLVER_OSQP) && weights_fit(cfg) &&
+           overlap_fits(cfg);
 }
 
 L1L2StabResult l1l2_config_resolve(const L1L2StabConfig *in, L1L2StabConfig *out)

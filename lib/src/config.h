@@ -3,11 +3,16 @@
 #ifndef L1L2_CONFIG_H
 #define L1L2_CONFIG_H
 
+#include <stdbool.h>
+
 #include "format.h"
 
 /* Copies *in (of whatever struct_size) over the defaults into *out, with `overlap` = 0 and `threads` as they stand
  * resolved: overlap by join. Checks every field; the reason of a refusal is logged to in's logger. */
 L1L2StabResult l1l2_config_resolve(const L1L2StabConfig *in, L1L2StabConfig *out);
+
+/* Whether lambda and crop_ratio are in range; a refusal is logged. */
+bool l1l2_config_check_knobs(const L1L2StabConfig *cfg);
 
 /* Size of the rendered picture. */
 void l1l2_config_output_size(const L1L2StabConfig *resolved, int *width, int *height);

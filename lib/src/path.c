@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "crop.h"
 #include "log.h"
@@ -17,7 +18,7 @@ typedef struct Slot {
 
 struct L1L2Path {
     L1L2PathConfig cfg;
-    L1L2Crop crop;
+    double crop_ratio, crop_step; /* of the frame pushed last, and what the next one adds on the way to cfg's */
     L1L2Plan plan;
     Slot *slots;      /* frame t is at t modulo capacity */
     int capacity;     /* window + the three frames that a window looks back on */
@@ -40,16 +41,16 @@ L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg)
     if (!path)
         return L1L2STAB_ERR_NOMEM;
     path->cfg = *cfg;
-    path->crop = l1l2_crop_make(cfg->width, cfg->height, cfg->crop_ratio);
     path->capacity = cfg->window + L1L2_HISTORY + 1;
     path->slots = l1l2_mem_new((size_t)path->capacity, sizeof *path->slots);
     path->problem = l1l2_path_problem_create(cfg->window);
-    path->solver = l1l2_path_solver_create(cfg->window, L1L2_SOLVER_BOTH);
+    path->solver = l1l2_path_solver_create(cfg->window);
     path->solution = l1l2_mem_new((size_t)cfg->window, sizeof *path->solution);
     if (!path->slots || !path->problem || !path->solver || !path->solution) {
         l1l2_path_free(path);
         return L1L2STAB_ERR_NOMEM;
     }
+    memcpy(path->problem->weight, cfg->weights, sizeof cfg->weights);
     l1l2_path_reset(path);
     *out = path;
     return L1L2STAB_OK;
@@ -70,6 +71,23 @@ void l1l2_path_reset(L1L2Path *path)
 {
     path->start = path->pushed = path->decided = path->pulled = 0;
     path->plan = l1l2_plan_start(path->cfg.window, path->cfg.overlap);
+    path->crop_ratio = path->cfg.crop_ratio;
+}
+
+void l1l2_path_set_lambda(L1L2Path *path, double lambda)
+{
+    path->cfg.lambda = lambda;
+}
+
+void l1l2_path_set_crop_ratio(L1L2Path *path, double crop_ratio)
+{
+    path->cfg.crop_ratio = crop_ratio;
+    path->crop_step = (crop_ratio - path->crop_ratio) / L1L2_CROP_RAMP;
+}
+
+static L1L2Crop crop_of(const L1L2Path *path, const L1L2PathFrame *frame)
+{
+    return l1l2_crop_make(path->cfg.width, path->cfg.height, frame->crop_ratio);
 }
 
 /* eq. (1), relative to the window's first frame: C of the frames of the window, and P of the three before it. */
@@ -81,9 +99,11 @@ static void describe_window(L1L2Path *path, const L1L2PlanStep *step)
     L1L2Mat camera = l1l2_mat_identity();
     p->count = step->count;
     for (int t = 0; t < step->count; t++) {
+        const L1L2PathFrame *frame = &slot(path, first + t)->frame;
+        const L1L2Crop crop = crop_of(path, frame);
         if (t > 0)
-            camera = l1l2_mat_mul(camera, slot(path, first + t)->frame.F);
-        l1l2_path_problem_set(p, t, &camera, path->cfg.lambda * 30.0 / rate, &path->crop);
+            camera = l1l2_mat_mul(camera, frame->F);
+        l1l2_path_problem_set(p, t, &camera, frame->lambda * 30.0 / rate, &crop);
     }
     p->history = 0;
     if (path->cfg.join != L1L2STAB_JOIN_CONTINUOUS)
@@ -111,10 +131,12 @@ static void hold_course(L1L2Path *path, const L1L2PlanStep *step)
         speed_x = slot(path, first - 1)->frame.S.m[2], speed_y = slot(path, first - 1)->frame.S.m[5];
     for (int t = 0; t < step->count; t++) {
         if (step->first + t > 0) {
+            const L1L2PathFrame *frame = &slot(path, first + t)->frame;
+            const L1L2Crop crop = crop_of(path, frame);
             L1L2Mat inverse; /* P_t = P_{t-1} S, so B_t = F_t^-1 B_{t-1} S */
-            l1l2_mat_inverse(slot(path, first + t)->frame.F, &inverse);
+            l1l2_mat_inverse(frame->F, &inverse);
             B = l1l2_mat_mul(l1l2_mat_mul(inverse, B), l1l2_mat_translation(speed_x, speed_y));
-            B = l1l2_crop_admit(&path->crop, &B);
+            B = l1l2_crop_admit(&crop, &B);
         }
         speed_x *= fade, speed_y *= fade;
         slot(path, first + t)->next_B = B;
@@ -127,10 +149,12 @@ static void update_transforms(L1L2Path *path, const L1L2PlanStep *step)
     const L1L2PathProblem *p = path->problem;
     for (int t = 0; t < step->count; t++) {
         const L1L2Mat camera = l1l2_q_to_mat(p->camera[t]), smooth = l1l2_q_to_mat(path->solution[t]);
+        Slot *s = slot(path, path->start + step->first + t);
+        const L1L2Crop crop = crop_of(path, &s->frame);
         L1L2Mat inverse;
         l1l2_mat_inverse(camera, &inverse);
         const L1L2Mat B = l1l2_mat_mul(inverse, smooth);
-        slot(path, path->start + step->first + t)->next_B = l1l2_crop_admit(&path->crop, &B);
+        s->next_B = l1l2_crop_admit(&crop, &B);
     }
 }
 
@@ -144,7 +168,7 @@ static L1L2Mat blend(const L1L2Mat *old_B, const L1L2Mat *new_B, int i, int over
     return B;
 }
 
-static void decide(L1L2Path *path, const L1L2PlanStep *step, bool fallback, int iterations)
+static void decide(L1L2Path *path, const L1L2PlanStep *step, const L1L2SolverReport *report)
 {
     for (int t = 0; t < step->give; t++) {
         const int64_t frame = path->start + step->first + t;
@@ -158,8 +182,8 @@ static void decide(L1L2Path *path, const L1L2PlanStep *step, bool fallback, int 
             l1l2_mat_inverse(slot(path, frame - 1)->frame.B, &inverse);
             f->S = l1l2_mat_mul(l1l2_mat_mul(inverse, f->F), f->B);
         }
-        f->fallback = fallback;
-        f->iterations = iterations;
+        f->fallback = !report->converged;
+        f->report = *report;
     }
     for (int t = step->give; t < step->count; t++) {
         Slot *s = slot(path, path->start + step->first + t);
@@ -168,36 +192,57 @@ static void decide(L1L2Path *path, const L1L2PlanStep *step, bool fallback, int 
     path->decided = path->start + step->first + step->give;
 }
 
-/* Solves every window that can be solved. */
+/* AUTO: OSQP's check costs about as much as the solve. Spread over a window's frames that is nothing; where windows
+ * slide by a frame or a few, the predictor's certificate stands alone. */
+static L1L2StabSolver choose_solver(const L1L2Path *path, const L1L2PlanStep *step)
+{
+    const int few_frames = 8;
+    if (path->cfg.solver != L1L2STAB_SOLVER_AUTO)
+        return path->cfg.solver;
+    return step->give >= few_frames ? L1L2STAB_SOLVER_CHECKED : L1L2STAB_SOLVER_PREDICTOR;
+}
+
+/* Solves every window that can be solved. A point that is not the optimum is taken where it is near enough that nobody
+ * could tell; else the course is held. */
 static void advance(L1L2Path *path, bool ended)
 {
+    const double near_enough = 1e-4;
     L1L2PlanStep step;
     while (l1l2_plan_next(&path->plan, path->pushed - path->start, ended, &step)) {
         describe_window(path, &step);
-        const L1L2SolverReport report = l1l2_path_solver_solve(path->solver, path->problem, path->solution);
-        if (report.converged) {
+        const L1L2SolverReport report =
+            l1l2_path_solver_solve(path->solver, choose_solver(path, &step), path->problem, path->solution);
+        const bool usable = report.converged || report.bound <= near_enough;
+        if (usable)
             update_transforms(path, &step);
-        } else {
+        else
             hold_course(path, &step);
+        if (!report.converged)
             l1l2_log(path->cfg.log, L1L2STAB_LOG_WARN,
-                     "path: no solver arrived on a window of %d frames (objective within %.2g): the course is held",
-                     step.count, report.bound);
-        }
-        decide(path, &step, !report.converged, report.predictor_iterations + report.osqp_iterations);
+                     "path: no solver arrived on a window of %d frames (objective within %.2g of its optimum)%s",
+                     step.count, report.bound, usable ? "" : ": the course is held");
+        decide(path, &step, &report);
     }
 }
 
 void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path)
 {
-    assert(path->pushed - path->pulled < path->cfg.window + 1);
+    assert(path->pushed - path->pulled < path->cfg.window);
     starts_path = starts_path || path->pushed == 0;
     if (starts_path) {
         advance(path, true);
         path->start = path->pushed;
         path->plan = l1l2_plan_start(path->cfg.window, path->cfg.overlap);
     }
+    if (starts_path || fabs(path->cfg.crop_ratio - path->crop_ratio) <= fabs(path->crop_step))
+        path->crop_ratio = path->cfg.crop_ratio;
+    else
+        path->crop_ratio += path->crop_step;
     L1L2PathFrame *f = &slot(path, path->pushed)->frame;
-    f->F = starts_path ? l1l2_mat_identity() : *F;
+    L1L2Mat inverse;
+    f->F = !starts_path && l1l2_mat_is_finite(F) && l1l2_mat_inverse(*F, &inverse) ? *F : l1l2_mat_identity();
+    f->lambda = path->cfg.lambda;
+    f->crop_ratio = path->crop_ratio;
     f->path_index = (uint64_t)(path->pushed - path->start);
     path->pushed++;
     advance(path, false);

@@ -20,6 +20,7 @@
 #include <l1l2stab/l1l2stab.h>
 
 #include "geom.h"
+#include "path_solver.h"
 
 typedef struct L1L2Path L1L2Path;
 
@@ -28,8 +29,10 @@ typedef struct L1L2PathConfig {
     double lambda;      /* of eq. (4) at 30 frames/s */
     double frame_rate;  /* frames a second; 0: 30 */
     double crop_ratio;
+    double weights[3];  /* of eq. (3); 1, 1, 1 in eq. (5) */
     int window, overlap; /* N, K */
     L1L2StabJoin join;
+    L1L2StabSolver solver;
     const L1L2StabLogger *log;
 } L1L2PathConfig;
 
@@ -37,8 +40,9 @@ typedef struct L1L2PathFrame {
     L1L2Mat F, B;        /* measured motion, update transform */
     L1L2Mat S;           /* smooth step P_{t-1}^-1 P_t; identity at a path's first frame */
     uint64_t path_index; /* frames since the path's start */
-    bool fallback;       /* the solver did not arrive: the path was held feasible and continuous instead */
-    int iterations;      /* of the solver, in the frame's window */
+    double lambda, crop_ratio; /* as they were when the frame was pushed */
+    bool fallback;       /* no solver arrived: the path is feasible and continuous, but not the optimum */
+    L1L2SolverReport report; /* of the frame's window */
 } L1L2PathFrame;
 
 /* On error *out is NULL. cfg->log must outlive the object. */
@@ -48,8 +52,14 @@ void l1l2_path_free(L1L2Path *path);
 /* As new, with its memory kept. */
 void l1l2_path_reset(L1L2Path *path);
 
-/* The next frame's motion F (frame t to t-1; finite and invertible). starts_path: F is not used, the path before it
- * ends. At most `window` frames may be waiting for l1l2_path_pull() before the call. */
+/* For the frames that are pushed from now on, also after a reset. A changed crop ratio is reached in even steps over
+ * L1L2_CROP_RAMP frames; a path that starts has it at once. */
+#define L1L2_CROP_RAMP 30
+void l1l2_path_set_lambda(L1L2Path *path, double lambda);
+void l1l2_path_set_crop_ratio(L1L2Path *path, double crop_ratio);
+
+/* The next frame's motion F (frame t to t-1); one that is not finite or not invertible counts as none. starts_path: F
+ * is not used, the path before it ends. At most `window` - 1 frames may be waiting for l1l2_path_pull(). */
 void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path);
 
 /* No more frames: all that are left get decided. */

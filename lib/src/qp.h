@@ -23,6 +23,12 @@ typedef struct L1L2Qp {
     int max_cols, max_rows, max_entries;
 } L1L2Qp;
 
+typedef struct L1L2QpSettings {
+    int max_iterations;
+    double rho;       /* step of the alternating directions: small trusts the start, large its own way */
+    double tolerance; /* of both residuals, absolute */
+} L1L2QpSettings;
+
 typedef struct L1L2QpReport {
     int converged;   /* 1: residuals within the solver's tolerance */
     int iterations;
@@ -35,6 +41,7 @@ void l1l2_qp_free(L1L2Qp *qp);
 /* Solve. z (cols) and the duals y (rows) hold the start on entry and the solution on return.
  * ERR_NOMEM or ERR_BACKEND where the solver could not run; OK with converged = 0 where it ran and did not arrive.
  * Deterministic: no clock, no randomness; no output, no signal handler. */
-L1L2StabResult l1l2_qp_solve(const L1L2Qp *qp, int max_iterations, double *z, double *y, L1L2QpReport *report);
+L1L2StabResult l1l2_qp_solve(const L1L2Qp *qp, const L1L2QpSettings *settings, double *z, double *y,
+                             L1L2QpReport *report);
 
 #endif

@@ -11,18 +11,18 @@
 #include "mem.h"
 #include "qp.h"
 
-static void settle(OSQPSettings *settings, int max_iterations)
+static void settle(OSQPSettings *settings, const L1L2QpSettings *wanted)
 {
     osqp_set_default_settings(settings);
     settings->scaling = 0;      /* path_qp.c scales by hand */
     settings->adaptive_rho = 0;
-    settings->rho = 2.0;
+    settings->rho = wanted->rho;
     settings->sigma = 1e-6;
     settings->alpha = 1.6;
-    settings->eps_abs = 1e-6;
+    settings->eps_abs = wanted->tolerance;
     settings->eps_rel = 0.0;
     settings->eps_prim_inf = settings->eps_dual_inf = 1e-12; /* B = identity is feasible, and nothing is unbounded */
-    settings->max_iter = max_iterations;
+    settings->max_iter = wanted->max_iterations;
     settings->check_termination = 1; /* costs less than an iteration, and a good start is accepted at once */
     settings->polish = 0;
     settings->verbose = 0;
@@ -44,7 +44,8 @@ static L1L2StabResult run(OSQPWorkspace *work, const L1L2Qp *qp, double *z, doub
     return L1L2STAB_OK;
 }
 
-L1L2StabResult l1l2_qp_solve(const L1L2Qp *qp, int max_iterations, double *z, double *y, L1L2QpReport *report)
+L1L2StabResult l1l2_qp_solve(const L1L2Qp *qp, const L1L2QpSettings *settings, double *z, double *y,
+                             L1L2QpReport *report)
 {
     *report = (L1L2QpReport){0};
     L1L2StabResult result = L1L2STAB_ERR_NOMEM;
@@ -58,9 +59,9 @@ L1L2StabResult l1l2_qp_solve(const L1L2Qp *qp, int max_iterations, double *z, do
     csc A = {.nzmax = qp->entries, .m = qp->rows, .n = qp->cols, .p = qp->start, .i = qp->row, .x = qp->value,
              .nz = -1};
     OSQPData data = {.n = qp->cols, .m = qp->rows, .P = &P, .A = &A, .q = qp->q, .l = qp->lower, .u = qp->upper};
-    OSQPSettings settings;
-    settle(&settings, max_iterations);
-    switch (osqp_setup(&work, &data, &settings)) {
+    OSQPSettings osqp;
+    settle(&osqp, settings);
+    switch (osqp_setup(&work, &data, &osqp)) {
     case 0:
         result = run(work, qp, z, y, report);
         break;

@@ -55,6 +55,8 @@ static L1L2StabResult build(L1L2Stab *s)
         .window = cfg->window,
         .overlap = cfg->overlap,
         .join = cfg->join,
+        .solver = cfg->solver,
+        .weights = {cfg->weights[0], cfg->weights[1], cfg->weights[2]},
         .log = &cfg->logger,
     };
     const L1L2WarpConfig warp = {
@@ -137,9 +139,59 @@ static bool planes_given(const L1L2Stab *s, const L1L2StabFrame *frame)
     return true;
 }
 
+/* A similarity that can be inverted, as path.c needs it. */
+static bool motion_valid(const L1L2Stab *s, const double motion[9])
+{
+    L1L2Mat F, inverse;
+    memcpy(F.m, motion, sizeof F.m);
+    const bool valid = l1l2_mat_is_finite(&F) && l1l2_mat_inverse(F, &inverse) && F.m[6] == 0.0 && F.m[7] == 0.0 &&
+                       F.m[8] == 1.0 && F.m[0] == F.m[4] && F.m[1] == -F.m[3];
+    if (!valid)
+        l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR,
+                 "motion is not an invertible similarity [a -b x; b a y; 0 0 1] of finite numbers");
+    return valid;
+}
+
+/* The frames between given motions are not tracked: a measured one after them starts from nothing. */
+static L1L2MotionResult given_motion(L1L2Stab *s, const double motion[9], bool starts_path)
+{
+    L1L2MotionResult result = {.F = l1l2_mat_identity(), .model = L1L2STAB_MODEL_NONE};
+    if (!starts_path) {
+        memcpy(result.F.m, motion, sizeof result.F.m);
+        result.F = l1l2_mat_rescale(result.F, 1.0 / s->diagonal_px);
+        result.model = L1L2STAB_MODEL_GIVEN;
+    }
+    l1l2_motion_reset(s->motion);
+    return result;
+}
+
+L1L2StabResult l1l2stab_set_lambda(L1L2Stab *s, double lambda)
+{
+    if (!s)
+        return L1L2STAB_ERR_ARGUMENT;
+    L1L2StabConfig wanted = s->cfg;
+    wanted.lambda = lambda;
+    if (!l1l2_config_check_knobs(&wanted))
+        return L1L2STAB_ERR_ARGUMENT;
+    l1l2_path_set_lambda(s->path, lambda);
+    return L1L2STAB_OK;
+}
+
+L1L2StabResult l1l2stab_set_crop_ratio(L1L2Stab *s, double crop_ratio)
+{
+    if (!s)
+        return L1L2STAB_ERR_ARGUMENT;
+    L1L2StabConfig wanted = s->cfg;
+    wanted.crop_ratio = crop_ratio;
+    if (!l1l2_config_check_knobs(&wanted))
+        return L1L2STAB_ERR_ARGUMENT;
+    l1l2_path_set_crop_ratio(s->path, crop_ratio);
+    return L1L2STAB_OK;
+}
+
 L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
 {
-    if (!s || !in || !planes_given(s, in))
+    if (!s || !in || (!in->motion && !planes_given(s, in)) || (in->motion && !motion_valid(s, in->motion)))
         return L1L2STAB_ERR_ARGUMENT;
     if (s->finished)
         return L1L2STAB_ERR_STATE;
@@ -147,7 +199,11 @@ L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
         return L1L2STAB_AGAIN;
     const bool starts_path = (in->flags & L1L2STAB_FRAME_DISCONT) != 0 || s->ring.count + s->pulled == 0;
     L1L2MotionResult motion;
-    const L1L2StabResult result = l1l2_motion_push(s->motion, in->data[0], in->stride[0], starts_path, &motion);
+    L1L2StabResult result = L1L2STAB_OK;
+    if (in->motion)
+        motion = given_motion(s, in->motion, starts_path);
+    else
+        result = l1l2_motion_push(s->motion, in->data[0], in->stride[0], starts_path, &motion);
     if (result != L1L2STAB_OK) {
         l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR, "push: %s", l1l2stab_strerror(result));
         return result;
@@ -196,10 +252,10 @@ L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque)
 }
 
 /* Output pixel to source pixel: B_t after the zoom that makes the crop window out of the output picture. */
-static L1L2Mat warp_map(const L1L2Stab *s, const L1L2Mat *B)
+static L1L2Mat warp_map(const L1L2Stab *s, const L1L2Mat *B, double crop_ratio)
 {
     const bool fill = s->cfg.output_size == L1L2STAB_OUTPUT_SIZE_INPUT;
-    const double zoom = fill ? s->cfg.crop_ratio : 1.0;
+    const double zoom = fill ? crop_ratio : crop_ratio / s->cfg.crop_ratio;
     return l1l2_mat_mul(l1l2_mat_rescale(*B, s->diagonal_px), l1l2_mat_diagonal(zoom, zoom));
 }
 
@@ -215,11 +271,14 @@ static void describe(const L1L2Stab *s, const L1L2Held *held, const L1L2Mat *map
     *info = (L1L2StabInfo){
         .index = s->pulled,
         .path_index = f->path_index,
-        .lambda = s->cfg.lambda,
-        .crop_ratio = s->cfg.crop_ratio,
+        .lambda = f->lambda,
+        .crop_ratio = f->crop_ratio,
         .tracks = held->motion.tracks,
         .inliers = held->motion.inliers,
-        .solver_iterations = f->iterations,
+        .solver_iterations = f->report.predictor_iterations + f->report.osqp_iterations,
+        .solver = f->report.decided_by,
+        .solver_bound = f->report.bound,
+        .solver_residual = {f->report.osqp_primal_residual, f->report.osqp_dual_residual},
         .model = held->motion.model,
         .stage_ns = {held->motion.scale_ns, held->motion.track_ns, held->motion.fit_ns, held->solve_ns, 0},
     };
@@ -254,11 +313,11 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
     const L1L2StabResult ready = readiness(s);
     if (ready != L1L2STAB_OK)
         return ready;
-    if (out && !planes_given(s, out))
+    if (out && (!planes_given(s, out) || !planes_given(s, &l1l2_ring_at(&s->ring, 0)->frame)))
         return L1L2STAB_ERR_ARGUMENT;
     fetch_path(s);
     const L1L2Held *held = l1l2_ring_at(&s->ring, 0);
-    const L1L2Mat map = warp_map(s, &s->next.B);
+    const L1L2Mat map = warp_map(s, &s->next.B, s->next.crop_ratio);
     const int64_t start_ns = l1l2_clock_ns();
     if (out) {
         l1l2_warp_render(s->warp, &map, (const uint8_t *const *)held->frame.data, held->frame.stride, out->data,

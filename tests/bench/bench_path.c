@@ -41,16 +41,16 @@ static int ascending(const void *a, const void *b)
     return *(const double *)a < *(const double *)b ? -1 : *(const double *)a > *(const double *)b;
 }
 
-static void bench(const char *name, int count, L1L2SolverChoice choice, int rounds)
+static void bench(const char *name, int count, L1L2StabSolver choice, int rounds)
 {
     L1L2PathProblem *p = l1l2_path_problem_create(count);
-    L1L2PathSolver *solver = l1l2_path_solver_create(count, choice);
+    L1L2PathSolver *solver = l1l2_path_solver_create(count);
     double(*q)[L1L2_DIM] = calloc((size_t)count, sizeof *q), ms[ROUNDS];
     int converged = 0, first = 0;
     for (int i = 0; i < rounds; i++) {
         describe(p, count, (uint64_t)i);
         const int64_t start_ns = l1l2_clock_ns();
-        const L1L2SolverReport report = l1l2_path_solver_solve(solver, p, q);
+        const L1L2SolverReport report = l1l2_path_solver_solve(solver, choice, p, q);
         ms[i] = 1e-6 * (double)(l1l2_clock_ns() - start_ns);
         converged += report.converged;
         first += report.osqp_iterations == 1;
@@ -69,9 +69,9 @@ int main(void)
     printf("                                N    median    worst   arrived  OSQP accepted at its first check\n");
     static const int counts[] = {30, 75, 150, 300, 450, 900};
     for (int i = 0; i < 6; i++)
-        bench("predictor", counts[i], L1L2_SOLVER_PREDICTOR, ROUNDS);
+        bench("predictor", counts[i], L1L2STAB_SOLVER_PREDICTOR, ROUNDS);
     for (int i = 0; i < 6; i++)
-        bench("predictor, checked by OSQP", counts[i], L1L2_SOLVER_BOTH, ROUNDS);
-    bench("OSQP alone", 150, L1L2_SOLVER_OSQP, 5);
+        bench("predictor, checked by OSQP", counts[i], L1L2STAB_SOLVER_CHECKED, ROUNDS);
+    bench("OSQP alone", 150, L1L2STAB_SOLVER_OSQP, 5);
     return EXIT_SUCCESS;
 }

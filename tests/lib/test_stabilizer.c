@@ -162,6 +162,72 @@ START_TEST(a_discontinuity_starts_a_path_without_a_change_of_delay)
 }
 END_TEST
 
+START_TEST(given_motions_take_the_place_of_measured_ones)
+{
+    const L1L2StabConfig cfg = small_config(16);
+    L1L2StabInfo measured[40], given;
+    Clip *clip = new_clip(40, cfg.format);
+    L1L2Stab *s = create(&cfg);
+    ck_assert_int_eq(stabilize(s, clip, measured, NULL), 40);
+    l1l2stab_reset(s);
+    int pulled = 0;
+    for (int t = 0; t <= 40; t++) { /* no pixels at all */
+        const L1L2StabFrame in = {.pts = t, .motion = t < 40 ? measured[t].F : NULL};
+        ck_assert_int_eq(t < 40 ? l1l2stab_push(s, &in) : l1l2stab_finish(s), L1L2STAB_OK);
+        L1L2StabFrame out = frame_of(clip, 0);
+        if (l1l2stab_peek(s, NULL, NULL) == L1L2STAB_OK) /* there is nothing to render */
+            ck_assert_int_eq(l1l2stab_pull(s, &out, NULL), L1L2STAB_ERR_ARGUMENT);
+        for (; l1l2stab_pull(s, NULL, &given) == L1L2STAB_OK; pulled++) {
+            const L1L2Mat a = mat_of(measured[pulled].B), b = mat_of(given.B);
+            ck_assert_near(l1l2_mat_corner_distance(&a, &b, 80, 48), 0.0, 1e-6);
+            ck_assert_int_eq(given.model, pulled == 0 ? L1L2STAB_MODEL_NONE : L1L2STAB_MODEL_GIVEN);
+        }
+    }
+    ck_assert_int_eq(pulled, 40);
+    const double skewed[9] = {1, 0.5, 0, 0, 1, 0, 0, 0, 1}, nothing[9] = {0};
+    l1l2stab_reset(s);
+    L1L2StabFrame bad = {.motion = skewed};
+    ck_assert_int_eq(l1l2stab_push(s, &bad), L1L2STAB_ERR_ARGUMENT);
+    bad.motion = nothing;
+    ck_assert_int_eq(l1l2stab_push(s, &bad), L1L2STAB_ERR_ARGUMENT);
+    l1l2stab_free(&s);
+    free_clip(clip);
+}
+END_TEST
+
+START_TEST(knobs_set_while_running_are_checked_and_used)
+{
+    const L1L2StabConfig cfg = small_config(8);
+    L1L2StabInfo info;
+    Clip *clip = new_clip(60, cfg.format);
+    L1L2Stab *s = create(&cfg);
+    ck_assert_int_eq(l1l2stab_set_lambda(s, -1.0), L1L2STAB_ERR_ARGUMENT);
+    ck_assert_int_eq(l1l2stab_set_lambda(NULL, 1.0), L1L2STAB_ERR_ARGUMENT);
+    ck_assert_int_eq(l1l2stab_set_crop_ratio(s, 1.5), L1L2STAB_ERR_ARGUMENT);
+    ck_assert_int_eq(l1l2stab_set_crop_ratio(NULL, 0.9), L1L2STAB_ERR_ARGUMENT);
+    for (int t = 0; t < 60; t++) {
+        if (t == 10) {
+            ck_assert_int_eq(l1l2stab_set_lambda(s, 2.0), L1L2STAB_OK);
+            ck_assert_int_eq(l1l2stab_set_crop_ratio(s, 0.6), L1L2STAB_OK);
+        }
+        const L1L2StabFrame in = frame_of(clip, t);
+        ck_assert_int_eq(l1l2stab_push(s, &in), L1L2STAB_OK);
+        if (l1l2stab_pull(s, NULL, &info) != L1L2STAB_OK)
+            continue;
+        ck_assert_near(info.lambda, info.index < 10 ? 0.5 : 2.0, 0.0);
+        if (info.index < 10 || info.index >= 40)
+            ck_assert_near(info.crop_ratio, info.index < 10 ? 0.8 : 0.6, 1e-12);
+        for (int k = 0; k < 4; k++) {
+            const L1L2Mat warp = mat_of(info.warp);
+            const L1L2Point p = l1l2_mat_apply(&warp, (L1L2Point){k & 1 ? 80 : -80, k & 2 ? 48 : -48});
+            ck_assert(fabs(p.x) <= 80 + 1e-9 && fabs(p.y) <= 48 + 1e-9);
+        }
+    }
+    l1l2stab_free(&s);
+    free_clip(clip);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("stabilizer");
@@ -173,6 +239,8 @@ int main(void)
     tcase_add_test(tcase, calls_out_of_order_are_errors_and_change_nothing);
     tcase_add_test(tcase, the_infos_matrices_agree_with_each_other);
     tcase_add_test(tcase, a_discontinuity_starts_a_path_without_a_change_of_delay);
+    tcase_add_test(tcase, given_motions_take_the_place_of_measured_ones);
+    tcase_add_test(tcase, knobs_set_while_running_are_checked_and_used);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

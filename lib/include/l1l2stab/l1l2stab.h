@@ -117,6 +117,14 @@ typedef enum L1L2StabOutputSize {
     L1L2STAB_OUTPUT_SIZE_CROP = 1   /* the crop window's own size, rounded down to even numbers: no zoom */
 } L1L2StabOutputSize;
 
+/* Who solves eq. (4): for tests and the curious. */
+typedef enum L1L2StabSolver {
+    L1L2STAB_SOLVER_AUTO = 0,      /* the predictor; where a window gives out several frames OSQP checks it */
+    L1L2STAB_SOLVER_CHECKED = 1,   /* the predictor, always checked by OSQP */
+    L1L2STAB_SOLVER_PREDICTOR = 2, /* the predictor; OSQP only where it does not arrive */
+    L1L2STAB_SOLVER_OSQP = 3       /* OSQP alone: far slower, and less exact */
+} L1L2StabSolver;
+
 typedef enum L1L2StabLogLevel {
     L1L2STAB_LOG_ERROR = 1, /* an L1L2STAB_ERR_* follows */
     L1L2STAB_LOG_WARN = 2,  /* output quality suffers */
@@ -151,6 +159,8 @@ typedef struct L1L2StabConfig {
     int threads;                   /* for the warp, [0, 64]; 0 = as many as there are cores. Default 0 */
     uint64_t seed;                 /* of RANSAC's draws. Default 1 */
     L1L2StabLogger logger;         /* default: silent */
+    double weights[3];             /* of |DP|, |D2P|, |D3P|, (0, 1000]; default 1, 1, 1 (eq. 5); G2011 has 10, 1, 100 */
+    L1L2StabSolver solver;         /* default AUTO */
 } L1L2StabConfig;
 
 /* The path starts anew at this frame: nothing before it belongs to the same shot. */
@@ -165,6 +175,10 @@ typedef struct L1L2StabFrame {
      * return OK. Must not call back into the library. May be NULL. */
     void (*release)(void *opaque);
     unsigned flags;      /* push only: L1L2STAB_FRAME_* */
+    /* push only: the frame's F_t (frame t to frame t-1, pixels, origin at the centre, 3x3 row-major, an invertible
+     * similarity), where the caller knows it; it is read during the call. NULL: it is measured. With a motion, data may
+     * be NULL, and the frame can only be pulled with out = NULL. */
+    const double *motion;
 } L1L2StabFrame;
 
 /* Which model of the inter-frame motion was used. */
@@ -173,7 +187,8 @@ typedef enum L1L2StabModel {
     L1L2STAB_MODEL_IDENTITY = 1,    /* nothing could be measured: taken as still */
     L1L2STAB_MODEL_PREDICTED = 2,   /* nothing could be measured: the motion before it, fading */
     L1L2STAB_MODEL_TRANSLATION = 3, /* too few points for more */
-    L1L2STAB_MODEL_SIMILARITY = 4
+    L1L2STAB_MODEL_SIMILARITY = 4,
+    L1L2STAB_MODEL_GIVEN = 5        /* L1L2StabFrame.motion */
 } L1L2StabModel;
 
 #define L1L2STAB_INFO_PATH_START (1u << 0)    /* first frame of a path */
@@ -200,14 +215,18 @@ typedef struct L1L2StabInfo {
     double C[9];         /* camera path relative to the path's first frame; accumulated, for display */
     double P[9];         /* smoothed path, ditto */
     double warp[9];      /* output pixel to source pixel, origins at the centres: what was rendered */
-    double lambda;       /* as configured */
-    double crop_ratio;   /* as configured */
+    double lambda;       /* that the frame was given */
+    double crop_ratio;   /* that the frame had, on the way to what was set where that changed */
     int tracks;          /* points that were tracked into this frame and passed the backward check */
     int inliers;         /* of these, consistent with F */
     int solver_iterations; /* of the window that this frame came from */
     L1L2StabModel model;
     unsigned flags;      /* L1L2STAB_INFO_* */
     int64_t stage_ns[L1L2STAB_STAGE_COUNT]; /* time spent, by stage */
+    /* Of the window that this frame came from: */
+    L1L2StabSolver solver;  /* who decided: PREDICTOR, OSQP, or CHECKED where both agree */
+    double solver_bound;    /* the objective is at most this far above its optimum; infinite for OSQP alone */
+    double solver_residual[2]; /* OSQP's primal and dual residual; 0 where it did not run */
     uint8_t reserved[64];
 } L1L2StabInfo;
 
@@ -228,6 +247,11 @@ L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_create(L1L2Stab **out, 
  * OK: the library reads in->data until it calls in->release. AGAIN: `window` frames are held, pull first.
  * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in);
+
+/* lambda and crop_ratio of the frames that are pushed from now on; ranges as in the config. A changed crop is reached
+ * in steps over 30 frames, so the picture does not jump; output_size CROP keeps the config's size. */
+L1L2STAB_API L1L2StabResult l1l2stab_set_lambda(L1L2Stab *s, double lambda);
+L1L2STAB_API L1L2StabResult l1l2stab_set_crop_ratio(L1L2Stab *s, double crop_ratio);
 
 /* Which frame would pull() give next? OK sets *pts and *opaque (each may be NULL); else as pull(). */
 L1L2STAB_API L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque);

@@ -249,9 +249,7 @@ static gboolean
 gst_l1l2_stab_propose_allocation (GstBaseTransform * trans,
     GstQuery * decide_query, GstQuery * query)
 {
-  GstL1L2Stab *self = GST_L1L2_STAB (trans);
-
-  gst_l1l2_stab_alloc_propose (query, self->stream.window);
+  gst_l1l2_stab_alloc_propose (query);
   return TRUE;
 }
 

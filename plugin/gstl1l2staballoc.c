@@ -4,10 +4,12 @@
 /* What upstream works with while the window is held: one being filled, one on its way, two to spare. */
 #define SPARE_BUFFERS 4
 
+/* Neither least nor most: a pool without a limit grows as the window fills, and from one with a limit frames are
+ * copied. To ask for a window of buffers would make upstream allocate them at once, beside those of a decoder that
+ * renders into memory of its own: measured with avdec_h264, twice the window. */
 void
-gst_l1l2_stab_alloc_propose (GstQuery * query, guint window)
+gst_l1l2_stab_alloc_propose (GstQuery * query)
 {
-  const guint least = window + SPARE_BUFFERS;
   GstBufferPool *pool = NULL;
   GstVideoInfo info;
   GstCaps *caps;
@@ -23,15 +25,14 @@ gst_l1l2_stab_alloc_propose (GstQuery * query, guint window)
     pool = gst_video_buffer_pool_new ();
     config = gst_buffer_pool_get_config (pool);
     gst_buffer_pool_config_set_params (config, caps,
-        GST_VIDEO_INFO_SIZE (&info), least, 0);
+        GST_VIDEO_INFO_SIZE (&info), 0, 0);
     gst_buffer_pool_config_add_option (config,
         GST_BUFFER_POOL_OPTION_VIDEO_META);
     if (!gst_buffer_pool_set_config (pool, config))
       gst_clear_object (&pool);
   }
-  /* Without a pool this still says how many buffers upstream's own must have. */
-  gst_query_add_allocation_pool (query, pool, GST_VIDEO_INFO_SIZE (&info),
-      least, 0);
+  gst_query_add_allocation_pool (query, pool, GST_VIDEO_INFO_SIZE (&info), 0,
+      0);
   gst_query_add_allocation_meta (query, GST_VIDEO_META_API_TYPE, NULL);
   gst_clear_object (&pool);
 }

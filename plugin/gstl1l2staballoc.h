@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Where buffers come from, when a window of them is held back. Upstream is told how many it needs; whoever cannot
- * lend so many keeps its own and is copied. */
+/* Where buffers come from, when a window of them is held back. Upstream is offered a pool without a limit; whoever has
+ * one with a limit keeps its own and is copied. */
 #ifndef GST_L1L2_STAB_ALLOC_H
 #define GST_L1L2_STAB_ALLOC_H
 
@@ -9,8 +9,8 @@
 
 G_BEGIN_DECLS
 
-/* Answers upstream's query: a pool for `window` frames and a few more, and GstVideoMeta. */
-void gst_l1l2_stab_alloc_propose (GstQuery * query, guint window);
+/* Answers upstream's query: a pool that grows as it is needed, and GstVideoMeta. */
+void gst_l1l2_stab_alloc_propose (GstQuery * query);
 
 /* Completes downstream's answer, so that there is a pool in any case. */
 void gst_l1l2_stab_alloc_decide (GstQuery * query);

@@ -2,7 +2,7 @@
 /*
  * How much does a video shake? Decodes with GStreamer and lets the library measure the motion, without rendering.
  *
- *     measure-shake [--picture=OUT.png] A [B]
+ *     measure-shake [--picture=OUT.png] [--motion=OUT.txt] A [B]
  *
  *     uridecodebin ! videoconvert ! videoflip ! appsink -> l1l2stab_push(), l1l2stab_pull(s, NULL, &info)
  *
@@ -19,6 +19,7 @@
 #include <gst/video/video.h>
 #include <l1l2stab/l1l2stab.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,6 +50,7 @@ typedef struct Video {
     gboolean moving;   /* velocity is set */
     double sum;        /* of the squared accelerations, over corners and frames */
     int count;
+    FILE *motion;      /* where each frame's F_t goes, or NULL */
     gboolean failed;   /* and a line on stderr says why */
 } Video;
 
@@ -100,6 +102,14 @@ static Corners corner_velocity(const double F[9], double width, double height)
 
 static void add_motion(Video *video, const L1L2StabInfo *info)
 {
+    if (video->motion) {
+        fprintf(video->motion, "%" G_GUINT64_FORMAT, info->index);
+        for (int i = 0; i < 9; i++) { /* with a point, whatever the locale */
+            char number[G_ASCII_DTOSTR_BUF_SIZE];
+            fprintf(video->motion, " %s", g_ascii_formatd(number, sizeof number, "%.12g", info->F[i]));
+        }
+        fputc('\n', video->motion);
+    }
     video->lost += info->flags & L1L2STAB_INFO_MOTION_LOST ? 1 : 0;
     if (info->flags & (L1L2STAB_INFO_PATH_START | L1L2STAB_INFO_MOTION_LOST)) {
         video->moving = FALSE;
@@ -148,6 +158,9 @@ static gboolean open_stabilizer(Video *video, GstCaps *caps)
     cfg.width = video->info.width;
     cfg.height = video->info.height;
     cfg.window = WINDOW;
+    if (video->motion)
+        fprintf(video->motion, "# t, F_t: frame t to frame t-1, row-major, pixels, origin at the centre of %dx%d\n",
+                cfg.width, cfg.height);
     const L1L2StabResult r = l1l2stab_create(&video->stab, &cfg);
     return r == L1L2STAB_OK || fail(video->path, "%s", l1l2stab_strerror(r));
 }
@@ -310,21 +323,25 @@ static gboolean write_picture(const char *path, const Video *a, const Video *b)
 
 int main(int argc, char **argv)
 {
-    char *picture = NULL;
+    char *picture = NULL, *motion = NULL;
     const GOptionEntry options[] = {
-        {"picture", 0, 0, G_OPTION_ARG_FILENAME, &picture, "Slit scan of A above that of B", "OUT.png"}, {NULL}};
+        {"picture", 0, 0, G_OPTION_ARG_FILENAME, &picture, "Slit scan of A above that of B", "OUT.png"},
+        {"motion", 0, 0, G_OPTION_ARG_FILENAME, &motion, "A's measured motion, for smooth-path", "OUT.txt"},
+        {NULL}};
     GOptionContext *context = g_option_context_new("A [B]");
     g_option_context_add_main_entries(context, options, NULL);
     g_option_context_add_group(context, gst_init_get_option_group());
     const gboolean parsed = g_option_context_parse(context, &argc, &argv, NULL);
     g_option_context_free(context);
     if (!parsed || argc < 2 || argc > 3 || (picture && argc < 3)) {
-        g_printerr("usage: measure-shake [--picture=OUT.png] A [B]\n");
+        g_printerr("usage: measure-shake [--picture=OUT.png] [--motion=OUT.txt] A [B]\n");
         return EXIT_USAGE;
     }
 
     Video videos[2] = {{.path = argv[1]}, {.path = argv[2]}};
     gboolean ok = TRUE;
+    if (motion && !(videos[0].motion = fopen(motion, "w")))
+        ok = fail(motion, "cannot be written");
     for (int i = 0; i < argc - 1 && ok; i++) {
         ok = measure(&videos[i]);
         if (ok)
@@ -337,9 +354,12 @@ int main(int argc, char **argv)
     if (ok && picture)
         ok = write_picture(picture, &videos[0], &videos[1]);
 
+    if (videos[0].motion && fclose(videos[0].motion) != 0)
+        ok = fail(motion, "cannot be written");
     for (int i = 0; i < 2; i++)
         if (videos[i].slits)
             g_byte_array_unref(videos[i].slits);
     g_free(picture);
+    g_free(motion);
     return ok ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -1,13 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # The sample programs from end to end: a shaky clip with sound becomes a steady one.
-# usage: check_samples.sh STABILIZE_FILE RENDER_SHAKY MEASURE_SHAKE
+# usage: check_samples.sh STABILIZE_FILE RENDER_SHAKY MEASURE_SHAKE SMOOTH_PATH
 set -eu
 export LC_ALL=C
 
 stabilize_file=$(realpath "$1")
 render_shaky=$(realpath "$2")
 measure_shake=$(realpath "$3")
+smooth_path=$(realpath "$4")
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 cd "$dir"
@@ -65,6 +66,17 @@ before=$(sed -n '1s/.*: \([0-9.]*\) px$/\1/p' measured)
 ratio=$(sed -n 's/^ratio: //p' measured)
 within "$before" "$(true_shake truth.txt)" 0.05 || fail "the clip's true shake is $(true_shake truth.txt) px"
 awk -v ratio="$ratio" 'BEGIN { exit !(ratio != "" && ratio < 0.15) }' || fail "the shake did not fall to 15 %"
+
+# The path alone, from the motion that was measured: as long as the clip, and nearer to the camera with more lambda.
+"$measure_shake" --motion=motion.txt 'a clip.mp4' >said || fail "$(cat said)"
+distance() {
+  "$smooth_path" motion.txt "$@" | awk '{ sum += ($2 - $4) ^ 2 + ($3 - $5) ^ 2 } END { print NR, sqrt(sum / NR) }'
+}
+free=$(distance lambda=0.1)
+close=$(distance lambda=2)
+[ "${free% *}" = 300 ] && [ "${close% *}" = 300 ] || fail "smooth-path gave $free and $close"
+awk -v a="${free#* }" -v b="${close#* }" 'BEGIN { exit !(b > 0 && b < a) }' || fail "lambda: $free, $close"
+"$smooth_path" motion.txt lambda=much >said 2>&1 && fail "accepted: lambda=much"
 
 echo 'this is no video' >text.mp4
 head -c 300000 'a clip.mp4' >cut.mp4

@@ -62,11 +62,13 @@ END
 camera() { echo "'$work/l1.txt' using 1:$1 with lines lc rgb '#c0c0c0' title 'camera'"; }
 smooth() { echo "'$work/$2.txt' using 1:$1 with lines lw 1.5 lc rgb '$3' title '$4'"; }
 
+grundmann='L1, weights 10, 1, 100'
+ours='L1-L2, lambda 0.5'
 plot fig1.svg 2,1 "
 set title 'x of the path'
-plot $(camera 2), $(smooth 4 l1 '#d95f02' 'L1, weights 10, 1, 100'), $(smooth 4 lambda-0.5 '#1b6ca8' 'L1-L2, lambda 0.5')
+plot $(camera 2), $(smooth 4 l1 '#d95f02' "$grundmann"), $(smooth 4 lambda-0.5 '#1b6ca8' "$ours")
 set title 'y of the path'
-plot $(camera 3), $(smooth 5 l1 '#d95f02' 'L1, weights 10, 1, 100'), $(smooth 5 lambda-0.5 '#1b6ca8' 'L1-L2, lambda 0.5')"
+plot $(camera 3), $(smooth 5 l1 '#d95f02' "$grundmann"), $(smooth 5 lambda-0.5 '#1b6ca8' "$ours")"
 panels=
 for lambda in 0.1 0.5 1 2; do
   panels+="

@@ -8,8 +8,8 @@
  *     build/samples/measure-shake --motion=motion.txt in.mp4
  *     build/samples/smooth-path motion.txt lambda=0.5 >path.txt
  *
- * MOTION: a line of "# ... WIDTHxHEIGHT", then one frame a line: t and the nine numbers of F_t, row-major, pixels, origin
- * at the centre. Output: t, then x and y of C_t's and of P_t's translation in pixels: where the frame's centre goes.
+ * MOTION: a line of "# ... WIDTHxHEIGHT", then one frame a line: t and the nine numbers of F_t, row-major, pixels,
+ * origin at the centre. Output: t, then x and y of C_t's and of P_t's translation in pixels: where the frame's centre goes.
  */
 #include <l1l2stab/l1l2stab.h>
 
@@ -59,7 +59,8 @@ static void print_ready(L1L2Stab *s)
 {
     L1L2StabInfo info;
     while (l1l2stab_pull(s, NULL, &info) == L1L2STAB_OK)
-        printf("%llu %.4f %.4f %.4f %.4f\n", (unsigned long long)info.index, info.C[2], info.C[5], info.P[2], info.P[5]);
+        printf("%llu %.4f %.4f %.4f %.4f\n", (unsigned long long)info.index, info.C[2], info.C[5], info.P[2],
+               info.P[5]);
 }
 
 static int run(FILE *file, const L1L2StabConfig *cfg)

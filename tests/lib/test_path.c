@@ -30,6 +30,23 @@ START_TEST(as_many_frames_come_out_as_went_in)
 }
 END_TEST
 
+START_TEST(the_longest_window_and_sliding_ones_work)
+{
+    static const struct {
+        int window, overlap, frames;
+    } cases[] = {{900, 600, 1300}, {40, 39, 120}, {4, 3, 60}, {5, 3, 60}};
+    for (int i = 0; i < 4; i++) {
+        L1L2PathConfig cfg = defaults();
+        cfg.window = cases[i].window, cfg.overlap = cases[i].overlap;
+        Run *r = shaky_run(cases[i].frames, 0.7, 4.0, 3);
+        run(&cfg, r);
+        for (int t = 0; t < r->frames; t++)
+            ck_assert(!r->out[t].fallback);
+        free(r);
+    }
+}
+END_TEST
+
 START_TEST(a_constant_path_is_returned_unchanged)
 {
     L1L2PathConfig cfg = defaults();
@@ -200,6 +217,7 @@ int main(void)
     TCase *tcase = tcase_create("path");
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, as_many_frames_come_out_as_went_in);
+    tcase_add_test(tcase, the_longest_window_and_sliding_ones_work);
     tcase_add_test(tcase, a_constant_path_is_returned_unchanged);
     tcase_add_test(tcase, a_steady_pan_keeps_its_speed_by_the_defaults);
     tcase_add_test(tcase, shake_on_a_steady_pan_is_removed);

@@ -9,7 +9,8 @@
  *     build/samples/smooth-path motion.txt lambda=0.5 >path.txt
  *
  * MOTION: a line of "# ... WIDTHxHEIGHT", then one frame a line: t and the nine numbers of F_t, row-major, pixels,
- * origin at the centre. Output: t, then x and y of C_t's and of P_t's translation in pixels: where the frame's centre goes.
+ * origin at the centre. Output: t, then x and y of C_t's and of P_t's translation in pixels: where the frame's centre
+ * goes.
  */
 #include <l1l2stab/l1l2stab.h>
 

@@ -84,7 +84,8 @@ START_TEST(joins_of_real_paths_are_no_rougher_than_what_lies_between)
     printf("third difference, px/frame^3    at joins: mean    worst    elsewhere: mean    worst    joins\n");
     const Roughness *rows[] = {&blend, &continuous};
     for (int i = 0; i < 2; i++)
-        printf("  %-28s           %8.4f %8.3f           %8.4f %8.3f    %d\n", i ? "continuous, K = 100" : "blend, K = 30",
+        printf("  %-28s           %8.4f %8.3f           %8.4f %8.3f    %d\n",
+               i ? "continuous, K = 100" : "blend, K = 30",
                rows[i]->sum[1] / rows[i]->count[1], rows[i]->worst[1], rows[i]->sum[0] / rows[i]->count[0],
                rows[i]->worst[0], rows[i]->count[1] / 3);
     ck_assert_int_ge(continuous.count[1] / 3, 20);

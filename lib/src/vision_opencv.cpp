@@ -34,7 +34,8 @@ constexpr int kIterations = 10;
 constexpr double kLastStep = 0.03;
 /* A patch's smaller eigenvalue below which it is not followed; about a third of a grey level a pixel. */
 constexpr double kMinEigenvalue = 1e-4;
-/* Corners weaker than this part of the strongest are left out. 0.01 loses the motion where a dark thing stands on snow. */
+/* Corners weaker than this part of the strongest are left out. At 0.01, a dark thing on snow leaves no point but its
+ * own. */
 constexpr double kCornerQuality = 0.003;
 /* A long strip keeps this many pixels of its short side, as far as it has them: a window has to find its place. */
 constexpr int kMinSide = 32;

@@ -10,7 +10,7 @@
 #include "ransac.h"
 #include "vision.h"
 
-/* On ten real clips 150 points are as good and 250 no better; on synthetic ones the median error is 0.016 px at 720p. */
+/* On ten real clips 150 points are as good, 250 no better; on synthetic ones the median error is 0.016 px at 720p. */
 enum { MAX_POINTS = 200, FEW_POINTS = MAX_POINTS / 2, RESELECT_FRAMES = 10 /* paper, section 4.3 */ };
 
 /* All in pixels of the tracked picture. The minimum distance spreads the points (paper, section 4.3); pictures so small

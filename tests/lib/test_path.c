@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Numbers in, numbers out: windows, joins, cuts and ends on camera paths that are known exactly. */
+#include <stdio.h>
+
 #include "path_fixture.h"
 
 /* The largest third difference of the smooth path at the joins of windows, and elsewhere, px/frame^3. */
@@ -181,6 +183,7 @@ START_TEST(lambda_means_the_same_at_every_frame_rate)
     double rms = 0.0;
     for (int t = 0; t < 600; t++)
         rms += pow(diagonal_px * l1l2_mat_corner_distance(&a->out[t].B, &b->out[2 * t].B, 0.436, 0.245), 2) / 600.0;
+    printf("the same walk at 30 and 60 frames/s: %.3f px rms between the two paths\n", sqrt(rms));
     ck_assert_msg(sqrt(rms) < 1.0, "paths at 30 and 60 frames/s differ by %g px rms", sqrt(rms));
     free(a);
     free(b);

@@ -43,6 +43,35 @@ START_TEST(numbers_that_no_camera_gives_are_survived)
 }
 END_TEST
 
+/* A lambda that is no number lets no solver arrive, though the motion is an ordinary one. */
+START_TEST(where_no_solver_arrives_the_path_goes_on_without_a_jump)
+{
+    const L1L2PathConfig cfg = defaults();
+    const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, cfg.crop_ratio);
+    Run *r = shaky_run(480, 1.0, 2.0, 8);
+    L1L2Path *path;
+    ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
+    int pulled = 0, held = 0;
+    for (int t = 0; t < r->frames; t++) {
+        if (t == 210 || t == 215)
+            l1l2_path_set_lambda(path, t == 210 ? NAN : 0.5);
+        l1l2_path_push(path, &r->F[t], false);
+        if (t - pulled + 1 == cfg.window)
+            ck_assert(l1l2_path_pull(path, &r->out[pulled++]));
+    }
+    for (int t = 1; t < pulled; t++) {
+        ck_assert_double_le(l1l2_crop_excess(&crop, &r->out[t].B), 1e-12);
+        if (r->out[t].fallback && !r->out[t - 1].fallback)
+            ck_assert_near(speed_px(r, t), speed_px(r, t - 1), 0.1);
+        held += r->out[t].fallback;
+    }
+    ck_assert_int_ge(held, 50);
+    ck_assert(!r->out[pulled - 1].fallback);
+    l1l2_path_free(path);
+    free(r);
+}
+END_TEST
+
 START_TEST(a_crop_that_changes_is_ramped_and_always_met)
 {
     const L1L2PathConfig cfg = defaults();
@@ -147,6 +176,7 @@ int main(void)
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, every_update_transform_stays_inside_whatever_the_motion);
     tcase_add_test(tcase, numbers_that_no_camera_gives_are_survived);
+    tcase_add_test(tcase, where_no_solver_arrives_the_path_goes_on_without_a_jump);
     tcase_add_test(tcase, a_crop_that_changes_is_ramped_and_always_met);
     tcase_add_test(tcase, lambda_travels_with_the_frames_it_was_set_for);
     tcase_add_test(tcase, a_motion_that_is_none_counts_as_still);

@@ -45,6 +45,8 @@ struct L1L2Motion {
     int since_selection;    /* frames */
     L1L2Mat last;           /* the last measured motion, fading while it is predicted from */
     int lost;               /* frames since the last measured one */
+    L1L2Thumbnail thumbnail;  /* of the current picture */
+    L1L2Thumbnail last_shown; /* of the last picture whose motion was measured, or with which a path started */
 };
 
 L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
@@ -92,6 +94,7 @@ static void start_path(L1L2Motion *m)
     m->since_selection = RESELECT_FRAMES;
     m->last = l1l2_mat_identity();
     m->lost = 0;
+    m->last_shown = m->thumbnail;
 }
 
 void l1l2_motion_reset(L1L2Motion *m)
@@ -152,7 +155,14 @@ static bool plausible(const L1L2Mat *F)
     return scale >= min_scale && scale <= max_scale && rotation <= max_rotation_rad;
 }
 
-/* Step 2: the ladder similarity, translation, predicted, identity. */
+/* Nothing could be measured: is it because another shot begins? A picture that shows nothing is none; what comes after
+ * it is compared with the one before. */
+static bool is_cut(const L1L2Motion *m)
+{
+    return l1l2_thumbnails_differ(&m->last_shown, &m->thumbnail);
+}
+
+/* Step 2: the ladder similarity, translation, predicted, identity; or a cut, which has no motion. */
 static void fit(L1L2Motion *m, L1L2MotionResult *out)
 {
     const int count = m->points;
@@ -172,6 +182,13 @@ static void fit(L1L2Motion *m, L1L2MotionResult *out)
         keep_inliers(m);
         m->last = out->F;
         m->lost = 0;
+        m->last_shown = m->thumbnail;
+        return;
+    }
+    if (is_cut(m)) {
+        l1l2_log(m->cfg.log, L1L2STAB_LOG_DEBUG, "motion: a cut");
+        *out = (L1L2MotionResult){.F = l1l2_mat_identity(), .scale_ns = out->scale_ns, .track_ns = out->track_ns};
+        start_path(m);
         return;
     }
     if (m->lost++ == 0)
@@ -193,6 +210,8 @@ L1L2StabResult l1l2_motion_push(L1L2Motion *m, const uint8_t *data, ptrdiff_t st
     *out = (L1L2MotionResult){.F = l1l2_mat_identity(), .model = L1L2STAB_MODEL_NONE};
     const int64_t start_ns = l1l2_clock_ns();
     L1L2StabResult result = l1l2_vision_advance(m->vision, data, stride);
+    if (result == L1L2STAB_OK)
+        result = l1l2_vision_thumbnail(m->vision, &m->thumbnail);
     const int64_t scaled_ns = l1l2_clock_ns();
     out->scale_ns = scaled_ns - start_ns;
     if (result == L1L2STAB_OK && starts_path) {

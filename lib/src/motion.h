@@ -28,6 +28,7 @@ typedef struct L1L2MotionConfig {
 
 typedef struct L1L2MotionResult {
     L1L2Mat F;          /* frame t to frame t-1, unit: the frame's diagonal; finite, invertible */
+    /* NONE: a path starts, because the caller said so or because a cut was seen. */
     L1L2StabModel model;
     int tracks, inliers;
     int64_t scale_ns, track_ns, fit_ns;

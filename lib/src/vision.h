@@ -13,6 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cut.h"
 #include "format.h"
 
 #ifdef __cplusplus
@@ -46,6 +47,9 @@ void l1l2_vision_size(const L1L2Vision *v, int *width, int *height);
 /* The current picture becomes the previous one; the frame's first plane, downscaled by area averaging, becomes the
  * current one, with its pyramid. Each pyramid is built once. */
 L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t stride);
+
+/* The current picture as a thumbnail, downscaled by area averaging. */
+L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail);
 
 /* Up to `capacity` new corners of the PREVIOUS picture, strongest first, at least min_distance pixels from each other
  * and from the `count` points of `taken`. *found says how many. */

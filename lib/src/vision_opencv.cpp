@@ -170,6 +170,14 @@ L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t
     });
 }
 
+L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail)
+{
+    return guard(v->cfg.log, [&] {
+        cv::Mat out(L1L2_THUMBNAIL_H, L1L2_THUMBNAIL_W, CV_8U, thumbnail->level);
+        cv::resize(v->grey, out, out.size(), 0, 0, cv::INTER_AREA);
+    });
+}
+
 L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int count, double min_distance,
                                    L1L2Pixel *corners, int capacity, int *found)
 {

@@ -13,9 +13,12 @@
  * The method is that of Qu and Song, "Video stabilization with L1-L2
  * optimization", ICIP 2013.
  *
- * Properties that are changed while the stream runs take effect with the next
- * caps, or when the element is started again. Interlaced video has to be
- * deinterlaced first.
+ * #l1l2stab:lambda and #l1l2stab:crop-ratio may be changed, or controlled by
+ * stream time, while the stream runs: they apply to the frames that come in
+ * from then on, and the crop gets there over 30 frames. The other properties
+ * take effect with the next caps, or when the element is started again; so does
+ * the size that crop-ratio gives with output-size=crop. Interlaced video has to
+ * be deinterlaced first.
  *
  * ## Example launch lines
  * |[
@@ -53,9 +56,8 @@ struct _GstL1L2Stab
 {
   GstBaseTransform parent;
 
-  /* Under the object lock. */
-  L1L2StabConfig settings;      /* the properties */
-  GstClockTime latency;
+  GstL1L2StabSettings settings; /* locks by itself */
+  GstClockTime latency;         /* under the object lock */
 
   /* Under the sink pad's stream lock. */
   GstL1L2StabStream stream;
@@ -64,14 +66,6 @@ struct _GstL1L2Stab
 G_DEFINE_TYPE (GstL1L2Stab, gst_l1l2_stab, GST_TYPE_BASE_TRANSFORM);
 GST_ELEMENT_REGISTER_DEFINE (l1l2stab, "l1l2stab", GST_RANK_NONE,
     GST_TYPE_L1L2_STAB);
-
-static void
-gst_l1l2_stab_get_settings (GstL1L2Stab * self, L1L2StabConfig * settings)
-{
-  GST_OBJECT_LOCK (self);
-  *settings = self->settings;
-  GST_OBJECT_UNLOCK (self);
-}
 
 /* --- latency --- */
 
@@ -140,6 +134,7 @@ gst_l1l2_stab_submit_input_buffer (GstBaseTransform * trans,
     gboolean is_discont, GstBuffer * input)
 {
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
+  gdouble lambda, crop_ratio;
   GstFlowReturn ret;
 
   /* The base class renegotiates where it has to, and leaves the frame in queued_buf. */
@@ -155,6 +150,11 @@ gst_l1l2_stab_submit_input_buffer (GstBaseTransform * trans,
     ret = gst_l1l2_stab_output_drain (trans, &self->stream);
   else
     ret = gst_l1l2_stab_output_push_ready (trans, &self->stream);
+  if (ret == GST_FLOW_OK) {
+    gst_l1l2_stab_settings_sample (&self->settings, &trans->segment, input,
+        &lambda, &crop_ratio);
+    ret = gst_l1l2_stab_stream_set_live (&self->stream, lambda, crop_ratio);
+  }
   if (ret != GST_FLOW_OK) {
     gst_buffer_unref (input);
     return ret;
@@ -177,6 +177,8 @@ gst_l1l2_stab_sink_event (GstBaseTransform * trans, GstEvent * event)
       break;
     case GST_EVENT_CAPS:
       /* set_caps() drains, if they are not the same as before. */
+      gst_l1l2_stab_settings_adopt (&self->settings,
+          GST_BASE_TRANSFORM_SINK_PAD (trans), event);
       break;
     case GST_EVENT_FLUSH_STOP:
       gst_l1l2_stab_output_flush (trans, &self->stream);
@@ -216,7 +218,7 @@ gst_l1l2_stab_transform_caps (GstBaseTransform * trans,
 {
   L1L2StabConfig settings;
 
-  gst_l1l2_stab_get_settings (GST_L1L2_STAB (trans), &settings);
+  gst_l1l2_stab_settings_in_use (&GST_L1L2_STAB (trans)->settings, &settings);
   return gst_l1l2_stab_caps_transform (&settings, direction, caps, filter);
 }
 
@@ -234,7 +236,7 @@ gst_l1l2_stab_set_caps (GstBaseTransform * trans, GstCaps * in_caps,
     return FALSE;
 
   gst_l1l2_stab_output_drain (trans, &self->stream);
-  gst_l1l2_stab_get_settings (self, &settings);
+  gst_l1l2_stab_settings_in_use (&self->settings, &settings);
   if (!gst_l1l2_stab_stream_open (&self->stream, &settings, &in_info,
           &out_info))
     return FALSE;
@@ -284,7 +286,7 @@ gst_l1l2_stab_start (GstBaseTransform * trans)
   L1L2StabConfig settings;
   int delay;
 
-  gst_l1l2_stab_get_settings (self, &settings);
+  gst_l1l2_stab_settings_in_use (&self->settings, &settings);
   settings.format = L1L2STAB_FORMAT_GRAY8;
   settings.width = settings.height = GST_L1L2_STAB_MIN_SIZE;
   gst_l1l2_stab_glue_logger (&settings.logger, &self->stream.log);
@@ -303,7 +305,10 @@ gst_l1l2_stab_start (GstBaseTransform * trans)
 static gboolean
 gst_l1l2_stab_stop (GstBaseTransform * trans)
 {
-  gst_l1l2_stab_stream_close (&GST_L1L2_STAB (trans)->stream);
+  GstL1L2Stab *self = GST_L1L2_STAB (trans);
+
+  gst_l1l2_stab_stream_close (&self->stream);
+  gst_l1l2_stab_settings_release (&self->settings);
   return TRUE;
 }
 
@@ -311,24 +316,18 @@ static void
 gst_l1l2_stab_set_property (GObject * object, guint id, const GValue * value,
     GParamSpec * pspec)
 {
-  GstL1L2Stab *self = GST_L1L2_STAB (object);
-
-  GST_OBJECT_LOCK (self);
-  if (!gst_l1l2_stab_settings_set (&self->settings, id, value))
+  if (!gst_l1l2_stab_settings_set (&GST_L1L2_STAB (object)->settings, id,
+          value))
     G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-  GST_OBJECT_UNLOCK (self);
 }
 
 static void
 gst_l1l2_stab_get_property (GObject * object, guint id, GValue * value,
     GParamSpec * pspec)
 {
-  GstL1L2Stab *self = GST_L1L2_STAB (object);
-
-  GST_OBJECT_LOCK (self);
-  if (!gst_l1l2_stab_settings_get (&self->settings, id, value))
+  if (!gst_l1l2_stab_settings_get (&GST_L1L2_STAB (object)->settings, id,
+          value))
     G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
-  GST_OBJECT_UNLOCK (self);
 }
 
 static void
@@ -383,7 +382,7 @@ gst_l1l2_stab_init (GstL1L2Stab * self)
 {
   GstBaseTransform *trans = GST_BASE_TRANSFORM_CAST (self);
 
-  l1l2stab_config_init (&self->settings, sizeof (self->settings));
+  gst_l1l2_stab_settings_init (&self->settings, GST_OBJECT_CAST (self));
   gst_l1l2_stab_stream_init (&self->stream, GST_ELEMENT_CAST (self));
 
   gst_base_transform_set_passthrough (trans, FALSE);

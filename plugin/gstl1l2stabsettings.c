@@ -18,6 +18,11 @@ enum
 #define SETTING_FLAGS \
   (G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY)
 
+/* Each frame samples these. */
+#define LIVE_FLAGS \
+  (G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_CONTROLLABLE \
+      | GST_PARAM_MUTABLE_PLAYING)
+
 #define GST_TYPE_L1L2_STAB_JOIN (gst_l1l2_stab_join_get_type ())
 static GType
 gst_l1l2_stab_join_get_type (void)
@@ -110,8 +115,9 @@ gst_l1l2_stab_settings_install (GObjectClass * klass)
   g_object_class_install_property (klass, PROP_LAMBDA,
       g_param_spec_double ("lambda", "Lambda",
           "Pull towards the shaken path, per frame diagonal: 0.1 smooths most, "
-          "2 follows the shake; means the same at every size and frame rate",
-          0, 1000, defaults.lambda, SETTING_FLAGS));
+          "2 follows the shake; means the same at every size and frame rate. "
+          "A change applies to the frames that come in from then on",
+          0, 1000, defaults.lambda, LIVE_FLAGS));
   g_object_class_install_property (klass, PROP_WINDOW,
       g_param_spec_int ("window", "Window",
           "Frames that are looked at together; as many are held back, which is "
@@ -123,8 +129,10 @@ gst_l1l2_stab_settings_install (GObjectClass * klass)
           0, 899, defaults.overlap, SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_CROP_RATIO,
       g_param_spec_double ("crop-ratio", "Crop ratio",
-          "Part of each side that is kept: less leaves more room to move",
-          0.5, 0.99, defaults.crop_ratio, SETTING_FLAGS));
+          "Part of each side that is kept: less leaves more room to move. "
+          "A change applies to the frames that come in from then on, in steps "
+          "over 30 frames; output-size=crop keeps its size until the next caps",
+          0.5, 0.99, defaults.crop_ratio, LIVE_FLAGS));
   install_enums (klass, &defaults);
   g_object_class_install_property (klass, PROP_THREADS,
       g_param_spec_int ("threads", "Threads",
@@ -132,9 +140,17 @@ gst_l1l2_stab_settings_install (GObjectClass * klass)
           0, 64, defaults.threads, SETTING_FLAGS));
 }
 
-gboolean
-gst_l1l2_stab_settings_set (L1L2StabConfig * config, guint id,
-    const GValue * value)
+void
+gst_l1l2_stab_settings_init (GstL1L2StabSettings * settings,
+    GstObject * object)
+{
+  memset (settings, 0, sizeof (*settings));
+  settings->object = object;
+  l1l2stab_config_init (&settings->wanted, sizeof (settings->wanted));
+}
+
+static gboolean
+set_field (L1L2StabConfig * config, guint id, const GValue * value)
 {
   switch (id) {
     case PROP_LAMBDA:
@@ -166,9 +182,8 @@ gst_l1l2_stab_settings_set (L1L2StabConfig * config, guint id,
   }
 }
 
-gboolean
-gst_l1l2_stab_settings_get (const L1L2StabConfig * config, guint id,
-    GValue * value)
+static gboolean
+get_field (const L1L2StabConfig * config, guint id, GValue * value)
 {
   switch (id) {
     case PROP_LAMBDA:
@@ -198,4 +213,84 @@ gst_l1l2_stab_settings_get (const L1L2StabConfig * config, guint id,
     default:
       return FALSE;
   }
+}
+
+gboolean
+gst_l1l2_stab_settings_set (GstL1L2StabSettings * settings, guint id,
+    const GValue * value)
+{
+  gboolean known;
+
+  GST_OBJECT_LOCK (settings->object);
+  known = set_field (&settings->wanted, id, value);
+  GST_OBJECT_UNLOCK (settings->object);
+  return known;
+}
+
+gboolean
+gst_l1l2_stab_settings_get (GstL1L2StabSettings * settings, guint id,
+    GValue * value)
+{
+  gboolean known;
+
+  GST_OBJECT_LOCK (settings->object);
+  known = get_field (&settings->wanted, id, value);
+  GST_OBJECT_UNLOCK (settings->object);
+  return known;
+}
+
+/* Caps are worked out, and the library is made for them, at different moments: with properties that change in between,
+ * the library would write frames of another size than the buffers have. */
+void
+gst_l1l2_stab_settings_adopt (GstL1L2StabSettings * settings, GstPad * pad,
+    GstEvent * caps_event)
+{
+  GstCaps *old_caps = gst_pad_get_current_caps (pad);
+  GstCaps *caps;
+
+  gst_event_parse_caps (caps_event, &caps);
+  if (!old_caps || !gst_caps_is_equal (old_caps, caps)) {
+    GST_OBJECT_LOCK (settings->object);
+    settings->in_use = settings->wanted;
+    settings->has_caps = TRUE;
+    GST_OBJECT_UNLOCK (settings->object);
+  }
+  gst_clear_caps (&old_caps);
+}
+
+void
+gst_l1l2_stab_settings_release (GstL1L2StabSettings * settings)
+{
+  GST_OBJECT_LOCK (settings->object);
+  settings->has_caps = FALSE;
+  GST_OBJECT_UNLOCK (settings->object);
+}
+
+void
+gst_l1l2_stab_settings_in_use (GstL1L2StabSettings * settings,
+    L1L2StabConfig * config)
+{
+  GST_OBJECT_LOCK (settings->object);
+  *config = settings->has_caps ? settings->in_use : settings->wanted;
+  GST_OBJECT_UNLOCK (settings->object);
+}
+
+/* A control binding sets the property, which locks: the lock is taken only after it. */
+void
+gst_l1l2_stab_settings_sample (GstL1L2StabSettings * settings,
+    const GstSegment * segment, GstBuffer * frame, gdouble * lambda,
+    gdouble * crop_ratio)
+{
+  GstClockTime time = GST_CLOCK_TIME_NONE;
+
+  if (segment->format == GST_FORMAT_TIME)
+    time = gst_segment_to_stream_time (segment, GST_FORMAT_TIME,
+        GST_BUFFER_PTS (frame));
+  if (GST_CLOCK_TIME_IS_VALID (time))
+    gst_object_sync_values (settings->object, time);
+
+  GST_OBJECT_LOCK (settings->object);
+  *lambda = settings->wanted.lambda;
+  *crop_ratio = settings->wanted.crop_ratio;
+  GST_OBJECT_UNLOCK (settings->object);
 }

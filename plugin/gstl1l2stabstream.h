@@ -19,6 +19,8 @@ typedef struct
   GstVideoInfo in_info;
   GstVideoInfo out_info;
   guint window;                 /* frames */
+  gdouble lambda;               /* of the frames that come in ... */
+  gdouble crop_ratio;           /* ... as the library was told last */
   GstBufferPool *own_pool;      /* made when upstream's buffers are scarce */
   guint64 n_in;                 /* frames that came in ... */
   guint64 n_out;                /* ... and of these, went out or were dropped */
@@ -37,6 +39,10 @@ gboolean gst_l1l2_stab_stream_open (GstL1L2StabStream * stream,
 void gst_l1l2_stab_stream_close (GstL1L2StabStream * stream);
 
 gboolean gst_l1l2_stab_stream_is_empty (const GstL1L2StabStream * stream);
+
+/* For the frames that are pushed from now on. */
+GstFlowReturn gst_l1l2_stab_stream_set_live (GstL1L2StabStream * stream,
+    gdouble lambda, gdouble crop_ratio);
 
 /* Takes `buffer`. */
 GstFlowReturn gst_l1l2_stab_stream_push (GstL1L2StabStream * stream,

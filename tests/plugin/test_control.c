@@ -1,0 +1,397 @@
+/* SPDX-License-Identifier: MIT */
+/* lambda and crop-ratio while the stream runs: set by the application, or controlled by stream time. The measure is
+ * the library, which is told the same values before the same frames. */
+#include <gst/controller/gstdirectcontrolbinding.h>
+#include <gst/controller/gstinterpolationcontrolsource.h>
+#include <l1l2stab/l1l2stab.h>
+
+#include "stabharness.h"
+
+#define WINDOW 6
+#define N_FRAMES 24
+#define CHANGED 12              /* the first frame that comes in after a change */
+#define WIDTH 160
+#define HEIGHT 120
+#define NOISE_CAPS \
+  "video/x-raw, format=GRAY8, width=160, height=120, framerate=25/1"
+
+/* What each frame is to be given. */
+typedef struct
+{
+  gdouble lambda[N_FRAMES], crop_ratio[N_FRAMES];
+} Knobs;
+
+static void
+init_knobs (Knobs * knobs, gdouble lambda_then, gdouble crop_ratio_then)
+{
+  guint i;
+
+  for (i = 0; i < N_FRAMES; i++) {
+    knobs->lambda[i] = i < CHANGED ? 0.5 : lambda_then;
+    knobs->crop_ratio[i] = i < CHANGED ? 0.9 : crop_ratio_then;
+  }
+}
+
+/* Cells of noise that jump while they pan. */
+static void
+fill_noise (guint8 * pixels, guint index)
+{
+  const guint shift_x = index * 3 + (index * 5) % 7, shift_y = (index * 3) % 5;
+  guint x, y;
+
+  for (y = 0; y < HEIGHT; y++)
+    for (x = 0; x < WIDTH; x++)
+      *pixels++ = ((x + shift_x) / 8 * 73856093u
+          ^ (y + shift_y) / 8 * 19349663u) * 2654435761u >> 24;
+}
+
+static void
+pull_from_library (L1L2Stab * stab, gint width, gint height, GPtrArray * out)
+{
+  guint8 *pixels = g_malloc (width * height);
+  L1L2StabFrame frame = { 0 };
+
+  frame.data[0] = pixels;
+  frame.stride[0] = width;
+  fail_unless_equals_int (l1l2stab_pull (stab, &frame, NULL), L1L2STAB_OK);
+  g_ptr_array_add (out, g_bytes_new_take (pixels, width * height));
+}
+
+/* The pictures that the library makes, GBytes. */
+static GPtrArray *
+run_library (const Knobs * knobs, L1L2StabOutputSize size)
+{
+  GPtrArray *out = g_ptr_array_new_with_free_func ((GDestroyNotify)
+      g_bytes_unref);
+  guint8 *inputs = g_malloc (N_FRAMES * WIDTH * HEIGHT);
+  L1L2StabConfig config;
+  L1L2Stab *stab = NULL;
+  gint width, height;
+  guint i;
+
+  l1l2stab_config_init (&config, sizeof (config));
+  config.format = L1L2STAB_FORMAT_GRAY8;
+  config.width = WIDTH;
+  config.height = HEIGHT;
+  config.frame_rate = 25;
+  config.window = WINDOW;
+  config.output_size = size;
+  fail_unless_equals_int (l1l2stab_create (&stab, &config), L1L2STAB_OK);
+  l1l2stab_config_output_size (&config, &width, &height);
+  for (i = 0; i < N_FRAMES; i++) {
+    L1L2StabFrame frame = { 0 };
+
+    frame.data[0] = inputs + i * WIDTH * HEIGHT;
+    frame.stride[0] = WIDTH;
+    fill_noise (frame.data[0], i);
+    if (knobs->lambda[i] != (i ? knobs->lambda[i - 1] : config.lambda))
+      l1l2stab_set_lambda (stab, knobs->lambda[i]);
+    if (knobs->crop_ratio[i] != (i ? knobs->crop_ratio[i - 1]
+            : config.crop_ratio))
+      l1l2stab_set_crop_ratio (stab, knobs->crop_ratio[i]);
+    fail_unless_equals_int (l1l2stab_push (stab, &frame), L1L2STAB_OK);
+    if (i >= WINDOW - 1)
+      pull_from_library (stab, width, height, out);
+  }
+  l1l2stab_finish (stab);
+  while (out->len < N_FRAMES)
+    pull_from_library (stab, width, height, out);
+  l1l2stab_free (&stab);
+  g_free (inputs);
+  return out;
+}
+
+static GstHarness *
+noise_harness_new (L1L2StabOutputSize size)
+{
+  GstHarness *h = stab_harness_new (NULL, "window", WINDOW, NULL);
+
+  g_object_set (h->element, "output-size", size, NULL);
+  gst_harness_set_src_caps_str (h, NOISE_CAPS);
+  return h;
+}
+
+/* The element's pictures, GBytes. The frames start at `base`; knobs, if there are any, are set before each frame. */
+static GPtrArray *
+run_element (GstHarness * h, const Knobs * knobs, GstClockTime base)
+{
+  GPtrArray *out = g_ptr_array_new_with_free_func ((GDestroyNotify)
+      g_bytes_unref);
+  GstBuffer *buffer;
+  guint i;
+
+  for (i = 0; i < N_FRAMES; i++) {
+    guint8 *pixels = g_malloc (WIDTH * HEIGHT);
+
+    fill_noise (pixels, i);
+    buffer = gst_buffer_new_wrapped (pixels, WIDTH * HEIGHT);
+    GST_BUFFER_PTS (buffer) = base + i * FRAME_DURATION;
+    if (knobs)
+      g_object_set (h->element, "lambda", knobs->lambda[i], "crop-ratio",
+          knobs->crop_ratio[i], NULL);
+    fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
+  }
+  gst_harness_push_event (h, gst_event_new_eos ());
+  while ((buffer = gst_harness_try_pull (h)) != NULL) {
+    GstMapInfo map;
+
+    fail_unless (gst_buffer_map (buffer, &map, GST_MAP_READ));
+    g_ptr_array_add (out, g_bytes_new (map.data, map.size));
+    gst_buffer_unmap (buffer, &map);
+    gst_buffer_unref (buffer);
+  }
+  fail_unless_equals_int (out->len, N_FRAMES);
+  return out;
+}
+
+/* The first frame in which they differ; N_FRAMES: none. */
+static guint
+first_difference (GPtrArray * a, GPtrArray * b)
+{
+  guint i;
+
+  for (i = 0; i < N_FRAMES; i++)
+    if (!g_bytes_equal (g_ptr_array_index (a, i), g_ptr_array_index (b, i)))
+      break;
+  return i;
+}
+
+static const struct
+{
+  gdouble lambda, crop_ratio;
+  L1L2StabOutputSize size;
+} changes[] = {
+  {100, 0.9, L1L2STAB_OUTPUT_SIZE_INPUT},
+  {0.5, 0.6, L1L2STAB_OUTPUT_SIZE_INPUT},
+  {0.5, 0.6, L1L2STAB_OUTPUT_SIZE_CROP},
+  {2, 0.99, L1L2STAB_OUTPUT_SIZE_CROP},
+};
+
+GST_START_TEST (a_change_while_playing_is_for_the_frames_that_come_in_later)
+{
+  const L1L2StabOutputSize size = changes[__i__].size;
+  GstHarness *plain_h = noise_harness_new (size);
+  GstHarness *changed_h = noise_harness_new (size);
+  GPtrArray *plain, *changed, *expected;
+  Knobs knobs;
+  guint changed_at;
+
+  init_knobs (&knobs, changes[__i__].lambda, changes[__i__].crop_ratio);
+  plain = run_element (plain_h, NULL, 0);
+  changed = run_element (changed_h, &knobs, 0);
+  expected = run_library (&knobs, size);
+
+  /* Of the frames that are held, those that share a window with a later one may move already. */
+  changed_at = first_difference (changed, plain);
+  fail_unless (changed_at > CHANGED - WINDOW && changed_at <= CHANGED + 1,
+      "frame %u is the first to differ", changed_at);
+  fail_unless_equals_int (first_difference (changed, expected), N_FRAMES);
+
+  g_ptr_array_unref (plain);
+  g_ptr_array_unref (changed);
+  g_ptr_array_unref (expected);
+  stab_harness_free (plain_h);
+  stab_harness_free (changed_h);
+}
+
+GST_END_TEST;
+
+/* From 0.95 down to 0.55 over the frames. */
+static GstControlSource *
+slope_new (void)
+{
+  GstControlSource *source = gst_interpolation_control_source_new ();
+  GstTimedValueControlSource *timed =
+      GST_TIMED_VALUE_CONTROL_SOURCE (source);
+
+  g_object_set (source, "mode", GST_INTERPOLATION_MODE_LINEAR, NULL);
+  gst_timed_value_control_source_set (timed, 0, 0.95);
+  gst_timed_value_control_source_set (timed, N_FRAMES * FRAME_DURATION, 0.55);
+  return source;
+}
+
+/* The frames' own timestamps are far behind the slope; by stream time they start with it. */
+static GPtrArray *
+run_controlled (GstControlSource * source, L1L2StabOutputSize size)
+{
+  const GstClockTime base = 100 * GST_SECOND;
+  GstHarness *h = noise_harness_new (size);
+  GstSegment segment;
+  GPtrArray *out;
+
+  fail_unless (gst_object_add_control_binding (GST_OBJECT (h->element),
+          gst_direct_control_binding_new_absolute (GST_OBJECT (h->element),
+              "crop-ratio", source)));
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.start = base;
+  segment.time = 0;
+  gst_harness_push_event (h, gst_event_new_segment (&segment));
+  out = run_element (h, NULL, base);
+  stab_harness_free (h);
+  return out;
+}
+
+GST_START_TEST (a_controller_drives_crop_ratio_by_stream_time)
+{
+  const L1L2StabOutputSize size = __i__;
+  GstControlSource *source = slope_new ();
+  GPtrArray *one, *two, *expected;
+  Knobs knobs;
+  guint i;
+
+  init_knobs (&knobs, 0.5, 0.9);
+  for (i = 0; i < N_FRAMES; i++)
+    fail_unless (gst_control_source_get_value (source, i * FRAME_DURATION,
+            &knobs.crop_ratio[i]));
+  fail_unless (knobs.crop_ratio[0] > knobs.crop_ratio[N_FRAMES - 1] + 0.3);
+
+  one = run_controlled (source, size);
+  two = run_controlled (source, size);
+  expected = run_library (&knobs, size);
+  fail_unless_equals_int (first_difference (one, two), N_FRAMES);
+  fail_unless_equals_int (first_difference (one, expected), N_FRAMES);
+
+  g_ptr_array_unref (one);
+  g_ptr_array_unref (two);
+  g_ptr_array_unref (expected);
+  gst_object_unref (source);
+}
+
+GST_END_TEST;
+
+static gint
+output_width (GstHarness * h)
+{
+  GstCaps *caps = gst_pad_get_current_caps (h->sinkpad);
+  gint width = 0;
+
+  gst_structure_get_int (gst_caps_get_structure (caps, 0), "width", &width);
+  gst_caps_unref (caps);
+  return width;
+}
+
+GST_START_TEST (with_output_size_crop_the_size_waits_for_new_caps)
+{
+  GstHarness *h = stab_harness_new (NULL, "window", WINDOW, NULL);
+  GstCaps *caps = gst_caps_from_string (SMALL_CAPS);
+  GString *line;
+
+  g_object_set (h->element, "output-size", L1L2STAB_OUTPUT_SIZE_CROP, NULL);
+  gst_harness_set_src_caps_str (h, SMALL_CAPS);
+  stab_push_frames (h, 0, WINDOW);
+  stab_pull_frames (h, 0, 1);
+  line = stab_record_new (h);
+  g_object_set (h->element, "crop-ratio", 0.5, NULL);
+  gst_harness_push_upstream_event (h, gst_event_new_reconfigure ());
+  stab_push_frames (h, WINDOW, 1);
+  gst_harness_push_event (h, gst_event_new_caps (caps));
+  stab_push_frames (h, WINDOW + 1, 1);
+  stab_pull_frames (h, 1, 2);
+  fail_if (strstr (line->str, "caps"), "%s", line->str);
+  fail_unless_equals_int (output_width (h), 56);
+
+  gst_harness_set_src_caps_str (h, "video/x-raw, format=I420, width=96, "
+      "height=48, framerate=25/1");
+  stab_push_frames (h, WINDOW + 2, WINDOW);
+  fail_unless_equals_int (output_width (h), 48);
+  gst_caps_unref (caps);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (what_is_live_says_so_and_nothing_else_does)
+{
+  static const GParamFlags moments = GST_PARAM_CONTROLLABLE
+      | GST_PARAM_MUTABLE_READY | GST_PARAM_MUTABLE_PAUSED
+      | GST_PARAM_MUTABLE_PLAYING;
+  GstElement *element = gst_element_factory_make ("l1l2stab", NULL);
+  GType type = G_OBJECT_TYPE (element);
+  GParamSpec **specs;
+  guint n, i, n_live = 0, n_others = 0;
+
+  specs = g_object_class_list_properties (G_OBJECT_GET_CLASS (element), &n);
+  for (i = 0; i < n; i++) {
+    const GParamFlags flags = specs[i]->flags & moments;
+
+    if (specs[i]->owner_type != type)
+      continue;
+    if (g_str_equal (specs[i]->name, "lambda")
+        || g_str_equal (specs[i]->name, "crop-ratio")) {
+      fail_unless (flags ==
+          (GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING));
+      n_live++;
+    } else {
+      fail_unless (flags == GST_PARAM_MUTABLE_READY, "%s", specs[i]->name);
+      n_others++;
+    }
+  }
+  fail_unless_equals_int (n_live, 2);
+  fail_unless_equals_int (n_others, 6);
+  g_free (specs);
+  gst_object_unref (element);
+}
+
+GST_END_TEST;
+
+static GstHarnessThread *
+stress (GstHarness * h, const gchar * name, gdouble number)
+{
+  GValue value = G_VALUE_INIT;
+  GstHarnessThread *thread;
+
+  g_value_init (&value, G_TYPE_DOUBLE);
+  g_value_set_double (&value, number);
+  thread = gst_harness_stress_property_start (h, name, &value);
+  g_value_unset (&value);
+  return thread;
+}
+
+GST_START_TEST (threads_that_change_both_lose_no_frame)
+{
+  static const gchar *caps[] = { SMALL_CAPS,
+    "video/x-raw, format=I420, width=96, height=48, framerate=25/1"
+  };
+  GstHarness *h = stab_harness_new (NULL, "window", WINDOW, NULL);
+  GstHarnessThread *threads[4];
+  guint i;
+
+  g_object_set (h->element, "output-size", L1L2STAB_OUTPUT_SIZE_CROP, NULL);
+  threads[0] = stress (h, "lambda", 0.1);
+  threads[1] = stress (h, "lambda", 2);
+  threads[2] = stress (h, "crop-ratio", 0.5);
+  threads[3] = stress (h, "crop-ratio", 0.99);
+  /* New caps are the moment at which a size could change between two looks at it. */
+  for (i = 0; i < 400; i++) {
+    if (i % 10 == 0)
+      gst_harness_set_src_caps_str (h, caps[i / 10 % 2]);
+    stab_push_frames (h, i, 1);
+  }
+  gst_harness_push_event (h, gst_event_new_eos ());
+  for (i = 0; i < G_N_ELEMENTS (threads); i++)
+    gst_harness_stress_thread_stop (threads[i]);
+  fail_unless_equals_int (gst_harness_buffers_received (h), 400);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+static Suite *
+control_suite (void)
+{
+  Suite *s = suite_create ("control");
+  TCase *tc = tcase_create ("control");
+
+  suite_add_tcase (s, tc);
+  tcase_add_loop_test (tc,
+      a_change_while_playing_is_for_the_frames_that_come_in_later, 0,
+      G_N_ELEMENTS (changes));
+  tcase_add_loop_test (tc, a_controller_drives_crop_ratio_by_stream_time,
+      L1L2STAB_OUTPUT_SIZE_INPUT, L1L2STAB_OUTPUT_SIZE_CROP + 1);
+  tcase_add_test (tc, with_output_size_crop_the_size_waits_for_new_caps);
+  tcase_add_test (tc, what_is_live_says_so_and_nothing_else_does);
+  tcase_add_test (tc, threads_that_change_both_lose_no_frame);
+  return s;
+}
+
+GST_CHECK_MAIN (control);

@@ -25,16 +25,18 @@
 
 /*
  * 4:2:0 at 8 bits is the H.264 that plays everywhere. videoflip turns what a phone filmed upright: the muxers drop the
- * tag that tells players to. Both it and deinterlace pass on untouched what does not concern them.
+ * tag that tells players to. Both it and deinterlace pass on untouched what does not concern them, and so does
+ * capssetter, see drop_absurd_rate().
  */
 #define VIDEO \
-    "uridecodebin name=source  queue name=video ! deinterlace ! videoconvert ! " \
+    "uridecodebin name=source  queue name=video ! capssetter name=rate ! deinterlace ! videoconvert ! " \
     "video/x-raw, format=(string){ I420, NV12 } ! videoflip video-direction=auto ! l1l2stab name=stabilizer ! " \
     "queue ! x264enc pass=qual quantizer=20 speed-preset=faster ! h264parse name=encoded"
 #define AUDIO_AAC "queue max-size-time=0 max-size-buffers=0 max-size-bytes=0"
 #define AUDIO_RAW "audioconvert ! audioresample ! avenc_aac ! " AUDIO_AAC
 
 #define EXIT_USAGE 2
+#define MAX_FRAME_RATE 1000 /* Hz */
 #define PROGRESS_TERMINAL_MS 500
 #define PROGRESS_LOG_MS 10000
 
@@ -184,6 +186,21 @@ static void link_audio(App *app, GstPad *pad, gboolean raw)
     g_clear_error(&error);
 }
 
+/* Some files call the clock of their timestamps, such as 90000, their frame rate. An encoder that believes it gives a
+ * frame next to no bits; without a rate it goes by the timestamps. */
+static void drop_absurd_rate(App *app, const GstCaps *caps)
+{
+    int numerator, denominator;
+    if (!gst_structure_get_fraction(gst_caps_get_structure(caps, 0), "framerate", &numerator, &denominator) ||
+        numerator <= MAX_FRAME_RATE * denominator)
+        return;
+    GstElement *rate = gst_bin_get_by_name(GST_BIN(app->pipeline), "rate");
+    GstCaps *variable = gst_caps_from_string("video/x-raw, framerate=(fraction)0/1");
+    g_object_set(rate, "caps", variable, NULL);
+    gst_caps_unref(variable);
+    gst_object_unref(rate);
+}
+
 /*
  * A decoded stream: the first of video and of audio are used. No data flows before all streams are known. This runs in
  * a streaming thread, so it reports by way of the bus.
@@ -198,6 +215,7 @@ static void on_pad_added(GstElement *source, GstPad *pad, App *app)
 
     if (g_str_has_prefix(type, "video/") && !app->has_video) {
         app->has_video = TRUE;
+        drop_absurd_rate(app, caps);
         if (!link_to_sink(pad, app->video))
             GST_ELEMENT_ERROR(app->pipeline, STREAM, FORMAT, ("the video's format is not supported"), (NULL));
     } else if (g_str_has_prefix(type, "audio/") && !app->has_audio) {

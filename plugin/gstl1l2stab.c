@@ -15,7 +15,7 @@
  *
  * #l1l2stab:lambda and #l1l2stab:crop-ratio may be changed, or controlled by
  * stream time, while the stream runs: they apply to the frames that come in
- * from then on, and the crop gets there over 30 frames. The other properties
+ * from then on; the crop moves by at most 0.005 a frame. The other properties
  * take effect with the next caps, or when the element is started again; so does
  * the size that crop-ratio gives with output-size=crop. Interlaced video has to
  * be deinterlaced first.

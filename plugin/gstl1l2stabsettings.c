@@ -130,8 +130,8 @@ gst_l1l2_stab_settings_install (GObjectClass * klass)
   g_object_class_install_property (klass, PROP_CROP_RATIO,
       g_param_spec_double ("crop-ratio", "Crop ratio",
           "Part of each side that is kept: less leaves more room to move. "
-          "A change applies to the frames that come in from then on, in steps "
-          "over 30 frames; output-size=crop keeps its size until the next caps",
+          "A change applies to the frames that come in from then on, by at most "
+          "0.005 a frame; output-size=crop keeps its size until the next caps",
           0.5, 0.99, defaults.crop_ratio, LIVE_FLAGS));
   install_enums (klass, &defaults);
   g_object_class_install_property (klass, PROP_THREADS,

@@ -56,8 +56,6 @@ gst_l1l2_stab_stream_open (GstL1L2StabStream * stream,
   stream->in_info = *in_info;
   stream->out_info = *out_info;
   stream->window = settings->window;
-  stream->lambda = settings->lambda;
-  stream->crop_ratio = settings->crop_ratio;
 
   gst_l1l2_stab_glue_config (&config, in_info);
   gst_l1l2_stab_glue_logger (&config.logger, &stream->log);
@@ -157,21 +155,14 @@ held_frame_new (GstL1L2StabStream * stream, GstBuffer * buffer)
   return held;
 }
 
-/* To set the crop once more would start its ramp once more. */
 GstFlowReturn
 gst_l1l2_stab_stream_set_live (GstL1L2StabStream * stream, gdouble lambda,
     gdouble crop_ratio)
 {
-  L1L2StabResult result = L1L2STAB_OK;
+  L1L2StabResult result = l1l2stab_set_lambda (stream->stab, lambda);
 
-  if (lambda != stream->lambda)
-    result = l1l2stab_set_lambda (stream->stab, lambda);
-  if (result >= 0 && crop_ratio != stream->crop_ratio)
+  if (result >= 0)
     result = l1l2stab_set_crop_ratio (stream->stab, crop_ratio);
-  if (result >= 0) {
-    stream->lambda = lambda;
-    stream->crop_ratio = crop_ratio;
-  }
   return flow (stream, result);
 }
 

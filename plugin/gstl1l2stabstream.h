@@ -19,8 +19,6 @@ typedef struct
   GstVideoInfo in_info;
   GstVideoInfo out_info;
   guint window;                 /* frames */
-  gdouble lambda;               /* of the frames that come in ... */
-  gdouble crop_ratio;           /* ... as the library was told last */
   GstBufferPool *own_pool;      /* made when upstream's buffers are scarce */
   guint64 n_in;                 /* frames that came in ... */
   guint64 n_out;                /* ... and of these, went out or were dropped */

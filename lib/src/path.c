@@ -18,7 +18,7 @@ typedef struct Slot {
 
 struct L1L2Path {
     L1L2PathConfig cfg;
-    double crop_ratio, crop_step; /* of the frame pushed last, and what the next one adds on the way to cfg's */
+    double crop_ratio; /* of the frame pushed last, on the way to cfg's */
     L1L2Plan plan;
     Slot *slots;      /* frame t is at t modulo capacity */
     int capacity;     /* window + the three frames that a window looks back on */
@@ -82,7 +82,6 @@ void l1l2_path_set_lambda(L1L2Path *path, double lambda)
 void l1l2_path_set_crop_ratio(L1L2Path *path, double crop_ratio)
 {
     path->cfg.crop_ratio = crop_ratio;
-    path->crop_step = (crop_ratio - path->crop_ratio) / L1L2_CROP_RAMP;
 }
 
 static L1L2Crop crop_of(const L1L2Path *path, const L1L2PathFrame *frame)
@@ -234,10 +233,11 @@ void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path)
         path->start = path->pushed;
         path->plan = l1l2_plan_start(path->cfg.window, path->cfg.overlap);
     }
-    if (starts_path || fabs(path->cfg.crop_ratio - path->crop_ratio) <= fabs(path->crop_step))
+    const double zoom = path->cfg.crop_ratio - path->crop_ratio;
+    if (starts_path || fabs(zoom) <= L1L2_CROP_STEP)
         path->crop_ratio = path->cfg.crop_ratio;
     else
-        path->crop_ratio += path->crop_step;
+        path->crop_ratio += copysign(L1L2_CROP_STEP, zoom);
     L1L2PathFrame *f = &slot(path, path->pushed)->frame;
     L1L2Mat inverse;
     f->F = !starts_path && l1l2_mat_is_finite(F) && l1l2_mat_inverse(*F, &inverse) ? *F : l1l2_mat_identity();

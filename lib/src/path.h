@@ -52,9 +52,10 @@ void l1l2_path_free(L1L2Path *path);
 /* As new, with its memory kept. */
 void l1l2_path_reset(L1L2Path *path);
 
-/* For the frames that are pushed from now on, also after a reset. A changed crop ratio is reached in even steps over
- * L1L2_CROP_RAMP frames; a path that starts has it at once. */
-#define L1L2_CROP_RAMP 30
+/* For the frames that are pushed from now on, also after a reset. A crop ratio changes by at most L1L2_CROP_STEP a
+ * frame: what is moved slower than that is followed exactly, a jump becomes a zoom. A path that starts has it at
+ * once. */
+#define L1L2_CROP_STEP 0.005
 void l1l2_path_set_lambda(L1L2Path *path, double lambda);
 void l1l2_path_set_crop_ratio(L1L2Path *path, double crop_ratio);
 

@@ -215,7 +215,7 @@ START_TEST(knobs_set_while_running_are_checked_and_used)
         if (l1l2stab_pull(s, NULL, &info) != L1L2STAB_OK)
             continue;
         ck_assert_near(info.lambda, info.index < 10 ? 0.5 : 2.0, 0.0);
-        if (info.index < 10 || info.index >= 40)
+        if (info.index < 10 || info.index >= 50)
             ck_assert_near(info.crop_ratio, info.index < 10 ? 0.8 : 0.6, 1e-12);
         for (int k = 0; k < 4; k++) {
             const L1L2Mat warp = mat_of(info.warp);

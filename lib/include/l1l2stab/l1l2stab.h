@@ -248,8 +248,8 @@ L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_create(L1L2Stab **out, 
  * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in);
 
-/* lambda and crop_ratio of the frames that are pushed from now on; ranges as in the config. A changed crop is reached
- * in steps over 30 frames, so the picture does not jump; output_size CROP keeps the config's size. */
+/* lambda and crop_ratio of the frames that are pushed from now on; ranges as in the config. The crop moves
+ * by at most 0.005 a frame, so the picture does not jump; output_size CROP keeps the config's size. */
 L1L2STAB_API L1L2StabResult l1l2stab_set_lambda(L1L2Stab *s, double lambda);
 L1L2STAB_API L1L2StabResult l1l2stab_set_crop_ratio(L1L2Stab *s, double crop_ratio);
 

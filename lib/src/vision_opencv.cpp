@@ -38,6 +38,9 @@ constexpr double kMinEigenvalue = 1e-4;
 /* Corners weaker than this part of the strongest are left out. At 0.01, a dark thing on snow leaves no point but its
  * own. */
 constexpr double kCornerQuality = 0.003;
+/* Cells in which no corner was chosen get a turn of their own, by their own strongest: else a burnt-in clock would
+ * leave a dark scene none. */
+constexpr int kCellsX = 4, kCellsY = 3;
 /* A long strip keeps this many pixels of its short side, as far as it has them: a window has to find its place. */
 constexpr int kMinSide = 32;
 
@@ -121,6 +124,35 @@ void follow(L1L2Vision *v)
                              kBackLevels, until, cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
 }
 
+/* Cell by cell from left to right, row by row. */
+cv::Rect cell_area(cv::Size size, int cell)
+{
+    const int x = cell % kCellsX, y = cell / kCellsX;
+    const int left = size.width * x / kCellsX, top = size.height * y / kCellsY;
+    return {left, top, size.width * (x + 1) / kCellsX - left, size.height * (y + 1) / kCellsY - top};
+}
+
+int cell_of(const L1L2Vision *v, L1L2Pixel p)
+{
+    const int x = int(p.x) * kCellsX / v->size.width, y = int(p.y) * kCellsY / v->size.height;
+    return std::clamp(y, 0, kCellsY - 1) * kCellsX + std::clamp(x, 0, kCellsX - 1);
+}
+
+/* Up to `quota` corners of an area, in pixels of the downscaled picture; those found are masked for the areas to come.
+ * Returns how many. */
+int corners_in(L1L2Vision *v, const cv::Mat &picture, cv::Rect area, int quota, double distance, float scale,
+               L1L2Pixel *corners)
+{
+    cv::goodFeaturesToTrack(picture(area), v->from, quota, kCornerQuality, distance, v->mask(area));
+    const int found = std::min(quota, int(v->from.size()));
+    for (int i = 0; i < found; i++) {
+        const cv::Point2f p = v->from[size_t(i)] + cv::Point2f(area.tl());
+        cv::circle(v->mask, p, cvCeil(distance), cv::Scalar(0), cv::FILLED);
+        corners[i] = {p.x * scale, p.y * scale};
+    }
+    return found;
+}
+
 } // namespace
 
 extern "C" {
@@ -196,10 +228,17 @@ L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int co
         for (int i = 0; i < count; i++) /* one pixel more, since centre and rim are rounded */
             cv::circle(v->mask, cv::Point(cvRound(taken[i].x / scale), cvRound(taken[i].y / scale)),
                        cvCeil(distance) + 1, cv::Scalar(0), cv::FILLED);
-        cv::goodFeaturesToTrack(picture, v->from, capacity, kCornerQuality, distance, v->mask);
-        *found = std::min(capacity, int(v->from.size()));
-        for (int i = 0; i < *found; i++)
-            corners[i] = {v->from[size_t(i)].x * scale, v->from[size_t(i)].y * scale};
+        bool empty[kCellsX * kCellsY];
+        std::fill(empty, empty + kCellsX * kCellsY, true);
+        *found = corners_in(v, picture, cv::Rect(cv::Point(), picture.size()), capacity, distance, scale, corners);
+        for (int i = 0; i < count + *found; i++)
+            empty[cell_of(v, i < count ? taken[i] : corners[i - count])] = false;
+        for (int cell = 0; cell < kCellsX * kCellsY; cell++) {
+            const int quota = std::min(capacity / (kCellsX * kCellsY), capacity - *found);
+            const cv::Rect area = cell_area(picture.size(), cell);
+            if (empty[cell] && quota > 0 && !area.empty())
+                *found += corners_in(v, picture, area, quota, distance, scale, corners + *found);
+        }
     });
 }
 

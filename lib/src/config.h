@@ -7,8 +7,8 @@
 
 #include "format.h"
 
-/* Copies *in (of whatever struct_size) over the defaults into *out, with `overlap` = 0 and `threads` as they stand
- * resolved: overlap by join. Checks every field; the reason of a refusal is logged to in's logger. */
+/* Copies *in (of whatever struct_size) over the defaults into *out, an overlap of 0 replaced by the join's default.
+ * Checks every field; the reason of a refusal is logged to in's logger. */
 L1L2StabResult l1l2_config_resolve(const L1L2StabConfig *in, L1L2StabConfig *out);
 
 /* Whether lambda and crop_ratio are in range; a refusal is logged. */

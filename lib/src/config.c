@@ -31,6 +31,7 @@ void l1l2stab_config_init(L1L2StabConfig *cfg, size_t struct_size)
         .seed = 1,
         .logger = {.max_level = L1L2STAB_LOG_INFO},
         .weights = {1.0, 1.0, 1.0},
+        .motion_model = L1L2STAB_MOTION_MODEL_SIMILARITY,
     };
     if (!cfg || struct_size < sizeof cfg->struct_size)
         return;
@@ -91,8 +92,10 @@ static bool valid(const L1L2StabConfig *cfg)
            in_range(cfg, "output_size", cfg->output_size, L1L2STAB_OUTPUT_SIZE_INPUT, L1L2STAB_OUTPUT_SIZE_CROP) &&
            in_range(cfg, "analysis_size", cfg->analysis_size, 128, 4096) &&
            in_range(cfg, "threads", cfg->threads, 0, 64) &&
-           in_range(cfg, "solver", cfg->solver, L1L2STAB_SOLVER_AUTO, L1L2STAB_SOLVER_OSQP) && weights_fit(cfg) &&
-           overlap_fits(cfg);
+           in_range(cfg, "solver", cfg->solver, L1L2STAB_SOLVER_AUTO, L1L2STAB_SOLVER_OSQP) &&
+           in_range(cfg, "motion_model", cfg->motion_model, L1L2STAB_MOTION_MODEL_TRANSLATION,
+                    L1L2STAB_MOTION_MODEL_AFFINE) &&
+           weights_fit(cfg) && overlap_fits(cfg);
 }
 
 L1L2StabResult l1l2_config_resolve(const L1L2StabConfig *in, L1L2StabConfig *out)

@@ -106,6 +106,13 @@ typedef enum L1L2StabJoin {
     L1L2STAB_JOIN_BLEND = 1       /* eq. (8) with its weights put right: the overlap is averaged */
 } L1L2StabJoin;
 
+/* What F_t may be, and with it the camera path. */
+typedef enum L1L2StabMotionModel {
+    L1L2STAB_MOTION_MODEL_TRANSLATION = 0, /* 2 parameters: the picture is moved, never turned */
+    L1L2STAB_MOTION_MODEL_SIMILARITY = 1,  /* 4: move, turn, zoom */
+    L1L2STAB_MOTION_MODEL_AFFINE = 2       /* 6: also shear and zoom along one axis */
+} L1L2StabMotionModel;
+
 typedef enum L1L2StabInterpolation {
     L1L2STAB_INTERPOLATION_BILINEAR = 0, /* 2x2 taps: fast, soft, its sharpness pulses */
     L1L2STAB_INTERPOLATION_BICUBIC = 1,  /* 4x4 taps, a = -0.75 */
@@ -161,6 +168,7 @@ typedef struct L1L2StabConfig {
     L1L2StabLogger logger;         /* default: silent */
     double weights[3];             /* of |DP|, |D2P|, |D3P|, (0, 1000]; default 1, 1, 1 (eq. 5); G2011 has 10, 1, 100 */
     L1L2StabSolver solver;         /* default AUTO */
+    L1L2StabMotionModel motion_model; /* default SIMILARITY */
 } L1L2StabConfig;
 
 /* The path starts anew at this frame: nothing before it belongs to the same shot. */
@@ -188,7 +196,8 @@ typedef enum L1L2StabModel {
     L1L2STAB_MODEL_PREDICTED = 2,   /* nothing could be measured: the motion before it, fading */
     L1L2STAB_MODEL_TRANSLATION = 3, /* too few points for more */
     L1L2STAB_MODEL_SIMILARITY = 4,
-    L1L2STAB_MODEL_GIVEN = 5        /* L1L2StabFrame.motion */
+    L1L2STAB_MODEL_GIVEN = 5,       /* L1L2StabFrame.motion */
+    L1L2STAB_MODEL_AFFINE = 6
 } L1L2StabModel;
 
 #define L1L2STAB_INFO_PATH_START (1u << 0)    /* first frame of a path */
@@ -227,7 +236,8 @@ typedef struct L1L2StabInfo {
     L1L2StabSolver solver;  /* who decided: PREDICTOR, OSQP, or CHECKED where both agree */
     double solver_bound;    /* the objective is at most this far above its optimum; infinite for OSQP alone */
     double solver_residual[2]; /* OSQP's primal and dual residual; 0 where it did not run */
-    uint8_t reserved[64];
+    double quality;          /* of F, [0, 1]: 0 not measured, 1 all over the frame the points agree */
+    uint8_t reserved[56];
 } L1L2StabInfo;
 
 /* Fill *cfg with the defaults; pass sizeof *cfg, so that a program built against an older header goes on working. */

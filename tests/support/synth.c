@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The camera's path in closed form, and the renderer. A sample is a bilinear lookup in a tile at a position that steps
- * evenly along the row; positions are 32 bit fixed-point numbers whose overflow is the tile's repetition.
+ * The renderer. A sample is a bilinear lookup in a tile at a position that steps evenly along the row; positions are
+ * 32 bit fixed-point numbers whose overflow is the tile's repetition. Every row has the camera of its own time.
  */
 #include "synth.h"
 
@@ -9,15 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "synth_path.h"
 #include "synth_scene.h"
 
 enum {
-    TONES = 6,
     NOISE_SIZE = 1 << 16,
     CHUNK = 256 /* samples that are rendered at once into the stack */
 };
-
-enum { CHANNEL_X, CHANNEL_Y, CHANNEL_ROLL, CHANNEL_ZOOM };
 
 static const double two_pi = 6.283185307179586;
 
@@ -34,21 +32,15 @@ typedef struct Axis {
 
 typedef struct View {
     const Synth *s;
-    double M[9];
+    double M[9];       /* of the row that is rendered */
     int width, height; /* pixels */
-    int t;             /* frame; -1: neither noise nor foreground */
+    int t;             /* frame; -1: at M throughout, neither noise nor foreground */
     double object_x, object_y, object_radius; /* the foreground's disc, px; the radius is 0 without it */
 } View;
 
 SynthConfig synth_defaults(void)
 {
     return (SynthConfig){.width = 640, .height = 360, .fps = 30.0, .shake = 4.0, .roll = 0.005, .seed = 1};
-}
-
-/* [0, 1) */
-static double fraction(uint64_t key)
-{
-    return (double)(synth_hash(key) >> 11) * 0x1p-53;
 }
 
 Synth *synth_new(const SynthConfig *cfg)
@@ -59,8 +51,8 @@ Synth *synth_new(const SynthConfig *cfg)
     if (cfg->noise > 0.0) {
         s->noise = synth_alloc(NOISE_SIZE, 1);
         for (uint64_t i = 0; i < NOISE_SIZE; i++) { /* Box and Muller */
-            const double radius = sqrt(-2.0 * log(1.0 - fraction(cfg->seed + 2 * i)));
-            const double v = cfg->noise * radius * cos(two_pi * fraction(cfg->seed + 2 * i + 1));
+            const double radius = sqrt(-2.0 * log(1.0 - synth_fraction(cfg->seed + 2 * i)));
+            const double v = cfg->noise * radius * cos(two_pi * synth_fraction(cfg->seed + 2 * i + 1));
             s->noise[i] = (int8_t)lrint(fmin(fmax(v, -127.0), 127.0));
         }
     }
@@ -76,30 +68,19 @@ void synth_free(Synth *s)
     free(s);
 }
 
-/* The hand's shake: tones from 0.6 to 7 Hz, weaker the faster, of rms 1 in all. */
-static double shake(const Synth *s, int channel, int t)
+void synth_camera_at(const Synth *s, double frames, double M[9])
 {
-    static const double hz[TONES] = {0.6, 1.1, 1.9, 3.1, 4.7, 7.0};
-    double sum = 0.0, power = 0.0;
-    for (int k = 0; k < TONES; k++) {
-        const uint64_t key = synth_hash(s->cfg.seed) + (uint64_t)(16 * channel + 2 * k);
-        const double amplitude = 1.0 / sqrt(hz[k]);
-        const double f = hz[k] * (0.85 + 0.3 * fraction(key));
-        sum += amplitude * sin(two_pi * (f * t / s->cfg.fps + fraction(key + 1)));
-        power += 0.5 * amplitude * amplitude;
-    }
-    return sum / sqrt(power);
+    synth_path_pose(&s->cfg, frames, M);
 }
 
 void synth_camera(const Synth *s, int t, double M[9])
 {
-    const SynthConfig *cfg = &s->cfg;
-    const double zoom = exp(cfg->zoom * shake(s, CHANNEL_ZOOM, t));
-    const double roll = cfg->roll * shake(s, CHANNEL_ROLL, t);
-    const double a = zoom * cos(roll), b = zoom * sin(roll);
-    const double x = cfg->pan_x * t + cfg->shake * shake(s, CHANNEL_X, t);
-    const double y = cfg->pan_y * t + cfg->shake * shake(s, CHANNEL_Y, t);
-    memcpy(M, (double[9]){a, -b, x, b, a, y, 0.0, 0.0, 1.0}, 9 * sizeof *M);
+    synth_camera_at(s, t, M);
+}
+
+double synth_row_time(const Synth *s, int t, double y)
+{
+    return t + s->cfg.readout * s->cfg.fps * y / s->cfg.height;
 }
 
 void synth_motion(const Synth *s, int t, double F[9])
@@ -132,6 +113,14 @@ static void lookup(const SynthTile *tile, double x, double y, double dx, double 
         const uint32_t bottom = (r1[x0] * (2048u - fx) + r1[x1] * fx) >> 7;
         out[i] = (uint8_t)((top * (2048u - fy) + bottom * fy + (1u << 21)) >> 22);
     }
+}
+
+/* Set the camera for row j. */
+static void aim(View *view, Axis ay, int j)
+{
+    const Synth *s = view->s;
+    if (view->t >= 0 && s->cfg.readout > 0.0)
+        synth_camera_at(s, synth_row_time(s, view->t, j * ay.step + ay.offset - 0.5 * view->height), view->M);
 }
 
 /* Samples [i0, i1) of row j, all of the camera's scene or all of the object. */
@@ -175,12 +164,13 @@ static void render_run(const View *view, int component, Axis ax, Axis ay, int j,
 }
 
 /* `components` of the three, interleaved; first, second: which. */
-static void render_plane(const View *view, int first, int second, Axis ax, Axis ay, int columns, int rows,
+static void render_plane(View *view, int first, int second, Axis ax, Axis ay, int columns, int rows,
                          uint8_t *data, ptrdiff_t stride)
 {
     uint8_t a[CHUNK], b[CHUNK];
     for (int j = 0; j < rows; j++) {
         uint8_t *row = data + j * stride;
+        aim(view, ay, j);
         for (int i0 = 0; i0 < columns; i0 += CHUNK) {
             const int i1 = i0 + CHUNK < columns ? i0 + CHUNK : columns;
             if (second < 0) {
@@ -198,11 +188,12 @@ static void render_plane(const View *view, int first, int second, Axis ax, Axis 
 }
 
 /* Full-range BT.601: the grey of R, G, B is the luma again. */
-static void render_packed(const View *view, int bytes, int red, uint8_t *data, ptrdiff_t stride)
+static void render_packed(View *view, int bytes, int red, uint8_t *data, ptrdiff_t stride)
 {
     const Axis unit = {1.0, 0.5};
     uint8_t yuv[3][CHUNK];
     for (int j = 0; j < view->height; j++) {
+        aim(view, unit, j);
         for (int i0 = 0; i0 < view->width; i0 += CHUNK) {
             const int i1 = i0 + CHUNK < view->width ? i0 + CHUNK : view->width;
             for (int c = 0; c < 3; c++)
@@ -256,7 +247,7 @@ static Axis chroma_axis(int log2_sub, int centred)
     return (Axis){2.0, centred ? 1.0 : 0.5};
 }
 
-static void render_view(const View *view, L1L2StabFormat format, uint8_t *const data[4], const ptrdiff_t stride[4])
+static void render_view(View *view, L1L2StabFormat format, uint8_t *const data[4], const ptrdiff_t stride[4])
 {
     const Layout layout = layout_of(format);
     const L1L2StabChromaSite site = view->s->cfg.chroma_site;

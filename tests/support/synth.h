@@ -25,6 +25,11 @@ typedef struct SynthConfig {
     double foreground;    /* part of the frame that an object with a motion of its own covers, [0, 0.6] */
     L1L2StabChromaSite chroma_site;
     uint64_t seed;        /* of the scene, the shake and the noise */
+    double turn;          /* the camera's steady roll, rad/frame */
+    double vibration;     /* amplitude of a vibration of each axis, px */
+    double vibration_roll; /* ditto of the roll, rad */
+    double vibration_hz;
+    double readout;       /* rolling shutter: from the first row's time to the last row's, s; 0: all rows at once */
 } SynthConfig;
 
 typedef struct Synth Synth;
@@ -36,8 +41,15 @@ SynthConfig synth_defaults(void);
 Synth *synth_new(const SynthConfig *cfg);
 void synth_free(Synth *s);
 
-/* M_t: frame t to the scene. */
+/* M_t: frame t to the scene; with a rolling shutter, its middle row. */
 void synth_camera(const Synth *s, int t, double M[9]);
+
+/* The camera at any time, in frames; it may be negative. */
+void synth_camera_at(const Synth *s, double frames, double M[9]);
+
+/* When the row of frame t that lies y px below its centre was taken, in frames: t + readout fps y / height. Chroma rows
+ * too are taken when their own y says. */
+double synth_row_time(const Synth *s, int t, double y);
 
 /* F_t = M_{t-1}^-1 M_t: frame t to frame t-1; the identity for t = 0. */
 void synth_motion(const Synth *s, int t, double F[9]);

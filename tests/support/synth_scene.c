@@ -25,6 +25,11 @@ uint64_t synth_hash(uint64_t key)
     return key ^ (key >> 31);
 }
 
+double synth_fraction(uint64_t key)
+{
+    return (double)(synth_hash(key) >> 11) * 0x1p-53;
+}
+
 void *synth_alloc(size_t count, size_t size)
 {
     void *p = calloc(count, size);

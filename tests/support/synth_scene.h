@@ -26,6 +26,9 @@ void synth_scene_clear(SynthScene *scene);
 /* An equally distributed 64 bit number for each key (splitmix64's finalizer). */
 uint64_t synth_hash(uint64_t key);
 
+/* One of [0, 1) for each key. */
+double synth_fraction(uint64_t key);
+
 /* calloc that aborts when out of memory. */
 void *synth_alloc(size_t count, size_t size);
 

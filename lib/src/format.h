@@ -5,27 +5,30 @@
 
 #include <l1l2stab/l1l2stab.h>
 
-/* How the first plane becomes the grey picture that is tracked. */
-typedef enum L1L2Luma {
-    L1L2_LUMA_PLANE, /* it is the luma plane */
-    L1L2_LUMA_BGR,   /* components 0, 1, 2 are blue, green, red */
-    L1L2_LUMA_RGB    /* components 0, 1, 2 are red, green, blue */
-} L1L2Luma;
+enum { L1L2_MAX_PLANES = 4 };
 
 typedef struct L1L2FormatInfo {
     L1L2StabFormat format;
-    const char *name;      /* GStreamer's */
-    int planes;            /* 1..3 */
-    L1L2Luma luma;
+    const char *name;       /* GStreamer's */
+    int depth;              /* bits of a component: 8 in a byte; 9..16 in two bytes, the low one first */
+    int shift;              /* unused low bits, zero: 16 - depth where the component is at the top of its two bytes */
+    double grey[4];         /* the first plane's grey picture, which is tracked: weights of its components, sum 1 */
+    int planes;             /* 1..4 */
     struct {
-        int components;    /* interleaved samples of one byte: 1..4 */
-        int log2_sub_x;    /* 0 or 1: horizontal subsampling */
-        int log2_sub_y;    /* 0 or 1 */
-    } plane[3];
+        int components;     /* interleaved: 1..4 */
+        int log2_sub_x;     /* horizontal subsampling: 0..2 */
+        int log2_sub_y;     /* vertical: 0, 1 */
+    } plane[L1L2_MAX_PLANES];
 } L1L2FormatInfo;
 
 /* NULL for a format that is not offered. */
 const L1L2FormatInfo *l1l2_format_info(L1L2StabFormat format);
+
+/* Bytes of a component. */
+static inline int l1l2_format_bytes(const L1L2FormatInfo *format)
+{
+    return format->depth > 8 ? 2 : 1;
+}
 
 /* Samples of a plane in a frame of `size` pixels: rounded up. */
 static inline int l1l2_plane_size(int size, int log2_sub)

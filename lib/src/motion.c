@@ -57,10 +57,9 @@ L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
         return L1L2STAB_ERR_NOMEM;
     m->cfg = *cfg;
     const L1L2VisionConfig vision = {
+        .format = cfg->format,
         .width = cfg->width,
         .height = cfg->height,
-        .components = cfg->components,
-        .luma = cfg->luma,
         .analysis_size = cfg->analysis_size,
         .log = cfg->log,
     };

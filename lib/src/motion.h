@@ -18,9 +18,8 @@
 typedef struct L1L2Motion L1L2Motion;
 
 typedef struct L1L2MotionConfig {
+    const L1L2FormatInfo *format;
     int width, height;  /* of the frames, pixels */
-    int components;     /* of the frames' first plane */
-    L1L2Luma luma;
     int analysis_size;  /* longer side of the tracked picture, pixels */
     uint64_t seed;
     const L1L2StabLogger *log;

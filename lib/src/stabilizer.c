@@ -38,10 +38,9 @@ static L1L2StabResult build(L1L2Stab *s)
 {
     const L1L2StabConfig *cfg = &s->cfg;
     const L1L2MotionConfig motion = {
+        .format = s->format,
         .width = cfg->width,
         .height = cfg->height,
-        .components = s->format->plane[0].components,
-        .luma = s->format->luma,
         .analysis_size = cfg->analysis_size,
         .seed = cfg->seed,
         .log = &cfg->logger,

@@ -23,9 +23,8 @@ extern "C" {
 typedef struct L1L2Vision L1L2Vision;
 
 typedef struct L1L2VisionConfig {
+    const L1L2FormatInfo *format;
     int width, height;    /* of the frames, pixels */
-    int components;       /* of the frames' first plane */
-    L1L2Luma luma;
     int analysis_size;    /* longer side of the downscaled picture, pixels; frames are never enlarged */
     const L1L2StabLogger *log;
 } L1L2VisionConfig;

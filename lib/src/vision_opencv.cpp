@@ -51,7 +51,7 @@ const cv::Size window_size(kWindow, kWindow);
 struct L1L2Vision {
     L1L2VisionConfig cfg;
     cv::Size size;
-    cv::Mat colour;                          /* downscaled, before it becomes grey */
+    cv::Mat scaled, mixed;                   /* what becomes the grey picture: all components, one component */
     cv::Mat grey, previous_grey;
     std::vector<cv::Mat> pyramid, previous_pyramid;
     int pictures = 0;                        /* taken since reset, at most 2 matter */
@@ -89,23 +89,21 @@ int scaled_side(const L1L2VisionConfig &cfg, int side)
     return std::max(cvRound(side * scale), std::min(side, kMinSide));
 }
 
-int grey_conversion(const L1L2VisionConfig &cfg)
-{
-    if (cfg.components == 4)
-        return cfg.luma == L1L2_LUMA_BGR ? cv::COLOR_BGRA2GRAY : cv::COLOR_RGBA2GRAY;
-    return cfg.luma == L1L2_LUMA_BGR ? cv::COLOR_BGR2GRAY : cv::COLOR_RGB2GRAY;
-}
-
-/* Downscaled by area, so that noise averages out and nothing aliases. */
+/* Downscaled by area, so that noise averages out and nothing aliases. Deep pictures are cut to 8 bits after that: what
+ * averages out is not lost. */
 void scale_to_grey(L1L2Vision *v, const cv::Mat &frame)
 {
-    cv::Mat &scaled = v->cfg.components == 1 ? v->grey : v->colour;
+    const L1L2FormatInfo *format = v->cfg.format;
+    cv::Mat &scaled = frame.type() == CV_8UC1 ? v->grey : v->scaled;
     if (frame.size() == v->size)
         frame.copyTo(scaled);
     else
         cv::resize(frame, scaled, v->size, 0, 0, cv::INTER_AREA);
-    if (v->cfg.components != 1)
-        cv::cvtColor(v->colour, v->grey, grey_conversion(v->cfg));
+    if (frame.channels() > 1)
+        cv::transform(scaled, v->mixed, cv::Mat(1, frame.channels(), CV_64F, const_cast<double *>(format->grey)));
+    if (frame.type() != CV_8UC1)
+        (frame.channels() > 1 ? v->mixed : scaled)
+            .convertTo(v->grey, CV_8U, std::ldexp(1.0, 8 - format->depth - format->shift));
 }
 
 bool inside(const L1L2Vision *v, cv::Point2f p)
@@ -186,7 +184,8 @@ void l1l2_vision_size(const L1L2Vision *v, int *width, int *height)
 L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t stride)
 {
     return guard(v->cfg.log, [&] {
-        const int type = CV_8UC(v->cfg.components);
+        const L1L2FormatInfo *format = v->cfg.format;
+        const int type = CV_MAKETYPE(format->depth > 8 ? CV_16U : CV_8U, format->plane[0].components);
         cv::swap(v->grey, v->previous_grey);
         std::swap(v->pyramid, v->previous_pyramid);
         if (stride > 0) {

@@ -28,14 +28,15 @@ typedef struct PlaneJob {
     L1L2WarpPlane src;
     uint8_t *dst;
     ptrdiff_t dst_stride;
-    int width, height, components; /* of dst, samples */
-    L1L2WarpU8Run *run;
+    int width, height; /* of dst, samples */
+    int sample_bytes;  /* of all its components */
+    L1L2WarpRun *run;
     int bands;
 } PlaneJob;
 
 typedef struct FrameJob {
     const L1L2WarpKernel *kernel;
-    PlaneJob plane[3];
+    PlaneJob plane[L1L2_MAX_PLANES];
 } FrameJob;
 
 L1L2StabResult l1l2_warp_create(L1L2Warp **out, const L1L2WarpConfig *cfg)
@@ -65,6 +66,12 @@ void l1l2_warp_free(L1L2Warp *w)
     l1l2_mem_free(w);
 }
 
+/* The sample type's function for one plane. */
+static L1L2WarpRun *find_run(const L1L2WarpConfig *cfg, int taps, int components)
+{
+    return (cfg->plain ? l1l2_warp_u8_run_plain : l1l2_warp_u8_run)(taps, components);
+}
+
 static void render_band(const PlaneJob *job, const L1L2WarpKernel *kernel, int band)
 {
     int32_t x[RUN_SAMPLES], y[RUN_SAMPLES];
@@ -75,7 +82,7 @@ static void render_band(const PlaneJob *job, const L1L2WarpKernel *kernel, int b
         for (int u = 0; u < job->width; u += RUN_SAMPLES) {
             const int count = job->width - u < RUN_SAMPLES ? job->width - u : RUN_SAMPLES;
             l1l2_warp_affine_run(&job->affine, u, v, count, x, y);
-            job->run(&job->src, kernel, x, y, count, row + u * job->components);
+            job->run(&job->src, kernel, x, y, count, row + u * job->sample_bytes);
         }
     }
 }
@@ -106,13 +113,13 @@ void l1l2_warp_render(L1L2Warp *w, const L1L2Mat *map, const uint8_t *const src[
         *plane = (PlaneJob){
             .affine = l1l2_warp_affine(map, &to, &from),
             .src = {src[i], src_stride[i], l1l2_plane_size(cfg->in_width, sub_x),
-                    l1l2_plane_size(cfg->in_height, sub_y)},
+                    l1l2_plane_size(cfg->in_height, sub_y), format->depth, format->shift},
             .dst = dst[i],
             .dst_stride = dst_stride[i],
             .width = l1l2_plane_size(cfg->out_width, sub_x),
             .height = l1l2_plane_size(cfg->out_height, sub_y),
-            .components = components,
-            .run = (cfg->plain ? l1l2_warp_u8_run_plain : l1l2_warp_u8_run)(w->kernel.taps, components),
+            .sample_bytes = components * l1l2_format_bytes(format),
+            .run = find_run(cfg, w->kernel.taps, components),
         };
         plane->bands = (plane->height + BAND_ROWS - 1) / BAND_ROWS;
         bands += plane->bands;

@@ -9,10 +9,7 @@
 #ifndef L1L2_WARP_U8_H
 #define L1L2_WARP_U8_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#include "warp_kernel.h"
+#include "warp_sample.h"
 
 enum {
     L1L2_WARP_U8_ROW_SHIFT = L1L2_WARP_WEIGHT_BITS - 6,
@@ -21,24 +18,13 @@ enum {
     L1L2_WARP_U8_ROUND = (1 << (L1L2_WARP_U8_SHIFT - 1)) + (1 << (L1L2_WARP_WEIGHT_BITS - 1))
 };
 
-typedef struct L1L2WarpPlane {
-    const uint8_t *data;
-    ptrdiff_t stride;
-    int width, height; /* samples */
-} L1L2WarpPlane;
-
-/* Writes count samples of all their components to dst from positions x[], y[] (fixed point of warp_coords.h); taps
- * beyond the plane repeat its edge. */
-typedef void L1L2WarpU8Run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
-                           int count, uint8_t *dst);
-
 /* For a kernel of 2, 4 or 6 taps and 1..4 interleaved components: the fastest that this processor has. */
-L1L2WarpU8Run *l1l2_warp_u8_run(int taps, int components);
+L1L2WarpRun *l1l2_warp_u8_run(int taps, int components);
 
 /* Plain C, for every processor. */
-L1L2WarpU8Run *l1l2_warp_u8_run_plain(int taps, int components);
+L1L2WarpRun *l1l2_warp_u8_run_plain(int taps, int components);
 
 /* There only where the build defines L1L2_WARP_AVX2, and for processors that have it. */
-L1L2WarpU8Run *l1l2_warp_u8_run_avx2(int taps, int components);
+L1L2WarpRun *l1l2_warp_u8_run_avx2(int taps, int components);
 
 #endif

@@ -228,7 +228,7 @@ SPECIALIZED bool render_group(const L1L2WarpPlane *src, const L1L2WarpKernel *ke
 SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
                      int count, uint8_t *dst, const int taps, const int components)
 {
-    L1L2WarpU8Run *const plain = l1l2_warp_u8_run_plain(taps, components);
+    L1L2WarpRun *const plain = l1l2_warp_u8_run_plain(taps, components);
     const Reach reach = find_reach(src, taps, components);
     const int group = components == 1 ? 8 : components == 2 ? 4 : 2;
     int i = 0;

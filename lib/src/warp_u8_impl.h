@@ -28,9 +28,9 @@
     DEFINE_RUNS_OF(2)                                                                                                 \
     DEFINE_RUNS_OF(4)                                                                                                 \
     DEFINE_RUNS_OF(6)                                                                                                 \
-    L1L2WarpU8Run *name(int taps, int components)                                                                     \
+    L1L2WarpRun *name(int taps, int components)                                                                       \
     {                                                                                                                 \
-        static L1L2WarpU8Run *const runs[3][4] = {RUNS_OF(2), RUNS_OF(4), RUNS_OF(6)};                                \
+        static L1L2WarpRun *const runs[3][4] = {RUNS_OF(2), RUNS_OF(4), RUNS_OF(6)};                                  \
         return runs[taps / 2 - 1][components - 1];                                                                    \
     }
 

@@ -62,7 +62,8 @@ static void bench(const Case *c, int width, int height)
     Synth *synth = synth_new(&cfg);
     uint8_t *picture = malloc((size_t)width * (size_t)height);
     const L1L2MotionConfig motion = {
-        .width = width, .height = height, .components = 1, .analysis_size = 640, .seed = 1};
+        .format = l1l2_format_info(L1L2STAB_FORMAT_GRAY8), .width = width, .height = height,
+        .analysis_size = 640, .seed = 1};
     L1L2Motion *m;
     if (!picture || l1l2_motion_create(&m, &motion) != L1L2STAB_OK)
         exit(EXIT_FAILURE);

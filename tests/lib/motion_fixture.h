@@ -26,9 +26,9 @@ typedef struct Run {
     L1L2Motion *motion;
 } Run;
 
-static inline L1L2Motion *motion_new(int width, int height, int components, L1L2Luma luma)
+static inline L1L2Motion *motion_new(int width, int height, L1L2StabFormat format)
 {
-    const L1L2MotionConfig cfg = {width, height, components, luma, 640, 1, &logger};
+    const L1L2MotionConfig cfg = {l1l2_format_info(format), width, height, 640, 1, &logger};
     L1L2Motion *m;
     ck_assert_int_eq(l1l2_motion_create(&m, &cfg), L1L2STAB_OK);
     return m;
@@ -38,7 +38,7 @@ static inline Run run_new(const SynthConfig *cfg)
 {
     warnings = 0;
     return (Run){*cfg, synth_new(cfg), synth_picture_new(L1L2STAB_FORMAT_GRAY8, cfg->width, cfg->height),
-                 motion_new(cfg->width, cfg->height, 1, L1L2_LUMA_PLANE)};
+                 motion_new(cfg->width, cfg->height, L1L2STAB_FORMAT_GRAY8)};
 }
 
 static inline void run_free(Run *run)

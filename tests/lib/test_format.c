@@ -81,15 +81,31 @@ START_TEST(halved_planes_of_odd_sizes_are_rounded_up)
 }
 END_TEST
 
+static double grey_weight(L1L2StabFormat format, int component)
+{
+    return l1l2_format_info(format)->grey[component];
+}
+
 START_TEST(grey_is_made_of_the_right_components)
 {
-    ck_assert_int_eq(l1l2_format_info(L1L2STAB_FORMAT_NV21)->luma, L1L2_LUMA_PLANE);
-    ck_assert_int_eq(l1l2_format_info(L1L2STAB_FORMAT_BGRX)->luma, L1L2_LUMA_BGR);
-    ck_assert_int_eq(l1l2_format_info(L1L2STAB_FORMAT_BGRA)->luma, L1L2_LUMA_BGR);
-    ck_assert_int_eq(l1l2_format_info(L1L2STAB_FORMAT_BGR)->luma, L1L2_LUMA_BGR);
-    ck_assert_int_eq(l1l2_format_info(L1L2STAB_FORMAT_RGBX)->luma, L1L2_LUMA_RGB);
-    ck_assert_int_eq(l1l2_format_info(L1L2STAB_FORMAT_RGBA)->luma, L1L2_LUMA_RGB);
-    ck_assert_int_eq(l1l2_format_info(L1L2STAB_FORMAT_RGB)->luma, L1L2_LUMA_RGB);
+    ck_assert_double_eq(grey_weight(L1L2STAB_FORMAT_NV21, 0), 1.0);
+    static const L1L2StabFormat blue_first[] = {L1L2STAB_FORMAT_BGRX, L1L2STAB_FORMAT_BGRA, L1L2STAB_FORMAT_BGR};
+    static const L1L2StabFormat red_first[] = {L1L2STAB_FORMAT_RGBX, L1L2STAB_FORMAT_RGBA, L1L2STAB_FORMAT_RGB};
+    for (int i = 0; i < 3; i++) {
+        ck_assert_double_eq(grey_weight(blue_first[i], 0), 0.114);
+        ck_assert_double_eq(grey_weight(red_first[i], 0), 0.299);
+    }
+}
+END_TEST
+
+START_TEST(grey_of_white_is_white)
+{
+    for (int id = L1L2STAB_FORMAT_GRAY8; id <= L1L2STAB_FORMAT_RGB; id++) {
+        double sum = 0.0;
+        for (int i = 0; i < l1l2_format_info((L1L2StabFormat)id)->plane[0].components; i++)
+            sum += grey_weight((L1L2StabFormat)id, i);
+        ck_assert_near(sum, 1.0, 1e-12);
+    }
 }
 END_TEST
 
@@ -104,6 +120,7 @@ int main(void)
     tcase_add_test(tc, y42b_is_halved_across_and_not_down);
     tcase_add_test(tc, halved_planes_of_odd_sizes_are_rounded_up);
     tcase_add_test(tc, grey_is_made_of_the_right_components);
+    tcase_add_test(tc, grey_of_white_is_white);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);
 }

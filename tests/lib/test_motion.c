@@ -93,7 +93,7 @@ START_TEST(two_instances_and_a_reset_one_give_equal_bits)
     cfg.noise = 12.0;
     cfg.foreground = 0.5;
     Run run = run_new(&cfg);
-    L1L2Motion *other = motion_new(cfg.width, cfg.height, 1, L1L2_LUMA_PLANE);
+    L1L2Motion *other = motion_new(cfg.width, cfg.height, L1L2STAB_FORMAT_GRAY8);
     L1L2MotionResult first[FRAMES];
     for (int t = 0; t < FRAMES; t++) {
         first[t] = push_frame(&run, t);
@@ -116,11 +116,10 @@ START_TEST(packed_pictures_give_nearly_the_motion_of_their_luma)
 {
     static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_BGR, L1L2STAB_FORMAT_RGB, L1L2STAB_FORMAT_BGRX,
                                              L1L2STAB_FORMAT_RGBA};
-    static const L1L2Luma lumas[] = {L1L2_LUMA_BGR, L1L2_LUMA_RGB, L1L2_LUMA_BGR, L1L2_LUMA_RGB};
     const SynthConfig cfg = synth_defaults();
     Run run = run_new(&cfg);
     SynthPicture packed = synth_picture_new(formats[_i], cfg.width, cfg.height);
-    L1L2Motion *motion = motion_new(cfg.width, cfg.height, _i < 2 ? 3 : 4, lumas[_i]);
+    L1L2Motion *motion = motion_new(cfg.width, cfg.height, formats[_i]);
     for (int t = 0; t < 15; t++) {
         const L1L2MotionResult grey = push_frame(&run, t);
         synth_render(run.synth, t, packed.format, packed.data, packed.stride);

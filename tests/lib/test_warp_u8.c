@@ -42,7 +42,7 @@ static L1L2WarpPlane plane_new(L1L2Rng *rng, int width, int height, int componen
     ck_assert_ptr_nonnull(data);
     for (size_t k = 0; k < bytes; k++)
         data[k] = (uint8_t)(l1l2_rng_below(rng, 3) ? l1l2_rng_next(rng) : l1l2_rng_below(rng, 2) * 255);
-    return (L1L2WarpPlane){data, stride, width, height};
+    return (L1L2WarpPlane){data, stride, width, height, 8, 0};
 }
 
 static void plane_free(L1L2WarpPlane *plane)
@@ -114,7 +114,7 @@ START_TEST(overshoot_is_cut_off)
     uint8_t rows[16][32], dst[16];
     for (int v = 0; v < 16; v++)
         memset(rows[v], 0, 16), memset(rows[v] + 16, 255, 16);
-    const L1L2WarpPlane src = {rows[0], 32, 32, 16};
+    const L1L2WarpPlane src = {rows[0], 32, 32, 16, 8, 0};
     for (int phase = 0; phase < L1L2_WARP_PHASES; phase += 31) {
         int32_t x[16], y[16];
         for (int i = 0; i < 16; i++) {

@@ -89,6 +89,12 @@ static L1L2Crop crop_of(const L1L2Path *path, const L1L2PathFrame *frame)
     return l1l2_crop_make(path->cfg.width, path->cfg.height, frame->crop_ratio);
 }
 
+/* The frames of a window that are averaged with the window before it. Where there are none the join is continuous. */
+static int blended(const L1L2Path *path, const L1L2PlanStep *step)
+{
+    return path->cfg.join == L1L2STAB_JOIN_BLEND ? step->shared : 0;
+}
+
 /* eq. (1), relative to the window's first frame: C of the frames of the window, and P of the three before it. */
 static void describe_window(L1L2Path *path, const L1L2PlanStep *step)
 {
@@ -105,7 +111,7 @@ static void describe_window(L1L2Path *path, const L1L2PlanStep *step)
         l1l2_path_problem_set(p, t, &camera, frame->lambda * 30.0 / rate, &crop);
     }
     p->history = 0;
-    if (path->cfg.join != L1L2STAB_JOIN_CONTINUOUS)
+    if (blended(path, step) > 0)
         return;
     camera = l1l2_mat_identity();
     for (int back = 1; back <= L1L2_HISTORY && back <= step->first; back++) {
@@ -169,18 +175,18 @@ static L1L2Mat blend(const L1L2Mat *old_B, const L1L2Mat *new_B, int i, int over
 
 static void decide(L1L2Path *path, const L1L2PlanStep *step, const L1L2SolverReport *report)
 {
+    const int shared = blended(path, step);
     for (int t = 0; t < step->give; t++) {
         const int64_t frame = path->start + step->first + t;
         L1L2PathFrame *f = &slot(path, frame)->frame;
-        f->B = path->cfg.join == L1L2STAB_JOIN_BLEND && t < step->shared
-                   ? blend(&f->B, &slot(path, frame)->next_B, t + 1, step->shared)
-                   : slot(path, frame)->next_B;
+        f->B = t < shared ? blend(&f->B, &slot(path, frame)->next_B, t + 1, shared) : slot(path, frame)->next_B;
         f->S = l1l2_mat_identity();
         if (frame > path->start) {
             L1L2Mat inverse;
             l1l2_mat_inverse(slot(path, frame - 1)->frame.B, &inverse);
             f->S = l1l2_mat_mul(l1l2_mat_mul(inverse, f->F), f->B);
         }
+        f->early = step->early;
         f->fallback = !report->converged;
         f->report = *report;
     }
@@ -201,27 +207,31 @@ static L1L2StabSolver choose_solver(const L1L2Path *path, const L1L2PlanStep *st
     return step->give >= few_frames ? L1L2STAB_SOLVER_CHECKED : L1L2STAB_SOLVER_PREDICTOR;
 }
 
-/* Solves every window that can be solved. A point that is not the optimum is taken where it is near enough that nobody
- * could tell; else the course is held. */
-static void advance(L1L2Path *path, bool ended)
+/* A point that is not the optimum is taken where it is near enough that nobody could tell; else the course is held. */
+static void solve_window(L1L2Path *path, const L1L2PlanStep *step)
 {
     const double near_enough = 1e-4;
+    describe_window(path, step);
+    const L1L2SolverReport report =
+        l1l2_path_solver_solve(path->solver, choose_solver(path, step), path->problem, path->solution);
+    const bool usable = report.converged || report.bound <= near_enough;
+    if (usable)
+        update_transforms(path, step);
+    else
+        hold_course(path, step);
+    if (!report.converged)
+        l1l2_log(path->cfg.log, L1L2STAB_LOG_WARN,
+                 "path: no solver arrived on a window of %d frames (objective within %.2g of its optimum)%s",
+                 step->count, report.bound, usable ? "" : ": the course is held");
+    decide(path, step, &report);
+}
+
+/* Solves every window that can be solved. */
+static void advance(L1L2Path *path, bool ended)
+{
     L1L2PlanStep step;
-    while (l1l2_plan_next(&path->plan, path->pushed - path->start, ended, &step)) {
-        describe_window(path, &step);
-        const L1L2SolverReport report =
-            l1l2_path_solver_solve(path->solver, choose_solver(path, &step), path->problem, path->solution);
-        const bool usable = report.converged || report.bound <= near_enough;
-        if (usable)
-            update_transforms(path, &step);
-        else
-            hold_course(path, &step);
-        if (!report.converged)
-            l1l2_log(path->cfg.log, L1L2STAB_LOG_WARN,
-                     "path: no solver arrived on a window of %d frames (objective within %.2g of its optimum)%s",
-                     step.count, report.bound, usable ? "" : ": the course is held");
-        decide(path, &step, &report);
-    }
+    while (l1l2_plan_next(&path->plan, path->pushed - path->start, ended, &step))
+        solve_window(path, &step);
 }
 
 void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path)
@@ -246,6 +256,14 @@ void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path)
     f->path_index = (uint64_t)(path->pushed - path->start);
     path->pushed++;
     advance(path, false);
+}
+
+void l1l2_path_hurry(L1L2Path *path, int frames)
+{
+    const int64_t undecided = path->pulled + frames - path->decided;
+    L1L2PlanStep step;
+    if (l1l2_plan_early(&path->plan, path->pushed - path->start, undecided, &step))
+        solve_window(path, &step);
 }
 
 void l1l2_path_finish(L1L2Path *path)

@@ -10,6 +10,7 @@
  *   continuous  the differences of a window reach back over the last three frames given out before it, as constants.
  *   blend       eq. (8) on the K shared frames. As printed, v_i = i/K weighs the OLD window: it would jump at both
  *               ends. The weights run the other way here: old 1 - i/(K+1), new i/(K+1), i = 1..K.
+ * Around an early window (plan.h) every join is a continuous one.
  */
 #ifndef L1L2_PATH_H
 #define L1L2_PATH_H
@@ -41,6 +42,7 @@ typedef struct L1L2PathFrame {
     L1L2Mat S;           /* smooth step P_{t-1}^-1 P_t; identity at a path's first frame */
     uint64_t path_index; /* frames since the path's start */
     double lambda, crop_ratio; /* as they were when the frame was pushed */
+    bool early;          /* decided by an early window, with a shorter look-ahead */
     bool fallback;       /* no solver arrived: the path is feasible and continuous, but not the optimum */
     L1L2SolverReport report; /* of the frame's window */
 } L1L2PathFrame;
@@ -63,10 +65,15 @@ void l1l2_path_set_crop_ratio(L1L2Path *path, double crop_ratio);
  * is not used, the path before it ends. At most `window` - 1 frames may be waiting for l1l2_path_pull(). */
 void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path);
 
+/* Decides the `frames` oldest frames that have not been pulled, or all there are, by what has come. Those that already
+ * are decided stay as they are. */
+void l1l2_path_hurry(L1L2Path *path, int frames);
+
 /* No more frames: all that are left get decided. */
 void l1l2_path_finish(L1L2Path *path);
 
-/* The oldest frame that has not been pulled, if it is decided: frame t is when frame t + window - 1 has been pushed. */
+/* The oldest frame that has not been pulled, if it is decided: frame t is when frame t + window - 1 has been pushed, if
+ * not sooner. */
 bool l1l2_path_pull(L1L2Path *path, L1L2PathFrame *out);
 
 #endif

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "plan.h"
 
+#include <assert.h>
+
 L1L2Plan l1l2_plan_start(int window, int overlap)
 {
-    return (L1L2Plan){.window = window, .overlap = overlap, .next = 0};
+    return (L1L2Plan){.window = window, .overlap = overlap};
 }
 
 bool l1l2_plan_next(L1L2Plan *plan, int64_t length, bool ended, L1L2PlanStep *step)
@@ -15,7 +17,25 @@ bool l1l2_plan_next(L1L2Plan *plan, int64_t length, bool ended, L1L2PlanStep *st
     step->first = plan->next;
     step->count = full ? plan->window : (int)left;
     step->give = full ? plan->window - plan->overlap : (int)left;
-    step->shared = plan->next > 0 ? plan->overlap : 0;
+    step->shared = plan->next > 0 && !plan->early ? plan->overlap : 0;
+    step->early = false;
     plan->next += step->give;
+    plan->early = false;
+    return true;
+}
+
+bool l1l2_plan_early(L1L2Plan *plan, int64_t length, int64_t give, L1L2PlanStep *step)
+{
+    const int64_t left = length - plan->next;
+    if (left <= 0 || give <= 0)
+        return false;
+    assert(left < plan->window);
+    step->first = plan->next;
+    step->count = (int)left;
+    step->give = (int)(give < left ? give : left);
+    step->shared = 0;
+    step->early = true;
+    plan->next += step->give;
+    plan->early = true;
     return true;
 }

@@ -27,6 +27,7 @@ struct L1L2Stab {
     L1L2Warp *warp;
     L1L2Ring ring;
     bool finished;
+    int hurried;              /* of the held frames, the oldest, which are ready whatever comes */
     bool decided;             /* `next` holds the path of the oldest held frame */
     L1L2PathFrame next;
     uint64_t pulled;          /* frames since create or reset */
@@ -125,6 +126,7 @@ void l1l2stab_reset(L1L2Stab *s)
     l1l2_motion_reset(s->motion);
     l1l2_path_reset(s->path);
     s->finished = s->decided = false;
+    s->hurried = 0;
     s->pulled = 0;
 }
 
@@ -215,6 +217,21 @@ L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
     return L1L2STAB_OK;
 }
 
+L1L2StabResult l1l2stab_hurry(L1L2Stab *s, int frames)
+{
+    if (!s || frames < 0)
+        return L1L2STAB_ERR_ARGUMENT;
+    if (frames > s->ring.count)
+        frames = s->ring.count;
+    if (frames <= s->hurried)
+        return L1L2STAB_OK;
+    const int64_t start_ns = l1l2_clock_ns();
+    l1l2_path_hurry(s->path, s->decided ? frames - 1 : frames);
+    l1l2_ring_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
+    s->hurried = frames;
+    return L1L2STAB_OK;
+}
+
 L1L2StabResult l1l2stab_finish(L1L2Stab *s)
 {
     if (!s)
@@ -230,7 +247,7 @@ L1L2StabResult l1l2stab_finish(L1L2Stab *s)
 
 static L1L2StabResult readiness(const L1L2Stab *s)
 {
-    if (s->ring.count > 0 && (s->finished || s->ring.count == s->ring.capacity))
+    if (s->ring.count > 0 && (s->finished || s->hurried > 0 || s->ring.count == s->ring.capacity))
         return L1L2STAB_OK;
     return s->finished ? L1L2STAB_EOS : L1L2STAB_AGAIN;
 }
@@ -293,6 +310,8 @@ static void describe(const L1L2Stab *s, const L1L2Held *held, const L1L2Mat *map
         info->flags |= L1L2STAB_INFO_MOTION_LOST;
     if (f->fallback)
         info->flags |= L1L2STAB_INFO_PATH_FALLBACK;
+    if (f->early)
+        info->flags |= L1L2STAB_INFO_EARLY;
 }
 
 /* Takes the oldest frame's path out of path.c, once, and carries C_t and P_t on. */
@@ -329,6 +348,7 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
         info->stage_ns[L1L2STAB_STAGE_WARP] = out ? l1l2_clock_ns() - start_ns : 0;
     }
     s->decided = false;
+    s->hurried -= s->hurried > 0;
     s->pulled++;
     l1l2_ring_drop_oldest(&s->ring);
     return L1L2STAB_OK;

@@ -18,6 +18,7 @@ typedef struct Run {
     int frames;
     L1L2Mat F[MAX_FRAMES];
     bool starts[MAX_FRAMES];
+    int hurry[MAX_FRAMES]; /* frames that are let go after frame t has come, of those that are held */
     L1L2PathFrame out[MAX_FRAMES];
 } Run;
 
@@ -28,7 +29,7 @@ static inline L1L2PathConfig defaults(void)
                             .join = L1L2STAB_JOIN_CONTINUOUS};
 }
 
-/* Pushes all frames, pulling as the stabilizer does: frame t once frame t + N - 1 has come. */
+/* Pushes all frames, pulling as the stabilizer does: frame t once frame t + N - 1 has come, or when it is hurried. */
 static inline void run(const L1L2PathConfig *cfg, Run *r)
 {
     L1L2Path *path;
@@ -38,6 +39,10 @@ static inline void run(const L1L2PathConfig *cfg, Run *r)
         l1l2_path_push(path, &r->F[t], r->starts[t]);
         if (t - pulled + 1 == cfg->window)
             ck_assert_msg(l1l2_path_pull(path, &r->out[pulled++]), "frame %d was not decided in time", pulled - 1);
+        if (r->hurry[t] > 0)
+            l1l2_path_hurry(path, r->hurry[t]);
+        for (int i = 0; i < r->hurry[t] && pulled <= t; i++)
+            ck_assert_msg(l1l2_path_pull(path, &r->out[pulled++]), "frame %d was hurried in vain", pulled - 1);
     }
     l1l2_path_finish(path);
     while (pulled < r->frames)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "checkx.h"
 #include "plan.h"
+#include "rng.h"
 
 enum { MAX_FRAMES = 200 };
 
@@ -62,6 +63,43 @@ START_TEST(sliding_windows_give_out_one_frame_each)
 }
 END_TEST
 
+START_TEST(early_windows_give_what_is_asked_and_the_next_ones_are_whole_again)
+{
+    for (int seed = 1; seed <= 300; seed++) {
+        const int window = 4 + seed % 20, overlap = 3 + seed % (window - 3), length = 120;
+        L1L2Rng rng = l1l2_rng_seeded((uint64_t)seed);
+        L1L2Plan plan = l1l2_plan_start(window, overlap);
+        L1L2PlanStep step;
+        int next = 0;
+        bool early = true; /* so that the first window shares nothing */
+        for (int come = 1; come <= length; come++) {
+            const bool hurry = l1l2_rng_next(&rng) % 8 == 0;
+            const int give = (int)(l1l2_rng_next(&rng) % (unsigned)window);
+            while (l1l2_plan_next(&plan, come, come == length, &step)) {
+                ck_assert_int_eq(step.first, next);
+                ck_assert_int_eq(step.count, come - next < window ? come - next : window);
+                ck_assert_int_eq(step.shared, early ? 0 : overlap);
+                ck_assert(!step.early);
+                early = false;
+                next += step.give;
+            }
+            ck_assert_int_lt(come - next, window); /* frame t is given out when frame t + N - 1 has come */
+            if (hurry && l1l2_plan_early(&plan, come, give, &step)) {
+                ck_assert_int_eq(step.first, next);
+                ck_assert_int_eq(step.count, come - next); /* all that have come */
+                ck_assert_int_eq(step.give, give < step.count ? give : step.count);
+                ck_assert_int_eq(step.shared, 0);
+                ck_assert(step.early);
+                early = true;
+                next += step.give;
+            }
+        }
+        ck_assert_int_eq(next, length);
+        ck_assert(!l1l2_plan_early(&plan, length, 5, &step));
+    }
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("plan");
@@ -70,6 +108,7 @@ int main(void)
     tcase_add_test(tcase, every_frame_is_given_out_once_in_order_and_in_time);
     tcase_add_test(tcase, lengths_around_the_window_work);
     tcase_add_test(tcase, sliding_windows_give_out_one_frame_each);
+    tcase_add_test(tcase, early_windows_give_what_is_asked_and_the_next_ones_are_whole_again);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

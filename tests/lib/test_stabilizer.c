@@ -42,6 +42,47 @@ START_TEST(a_frame_is_ready_when_the_window_is_full_and_not_before)
 }
 END_TEST
 
+START_TEST(hurried_frames_are_ready_at_once_and_those_after_them_wait_again)
+{
+    const L1L2StabConfig cfg = small_config(10);
+    Clip *clip = new_clip(40, cfg.format);
+    L1L2Stab *s = create(&cfg);
+    L1L2StabInfo info;
+    int pulled = 0;
+    ck_assert_int_eq(l1l2stab_hurry(s, 3), L1L2STAB_OK); /* nothing is held */
+    ck_assert_int_eq(l1l2stab_hurry(s, -1), L1L2STAB_ERR_ARGUMENT);
+    ck_assert_int_eq(l1l2stab_hurry(NULL, 1), L1L2STAB_ERR_ARGUMENT);
+    for (int t = 0; t < 40; t++) {
+        const L1L2StabFrame in = frame_of(clip, t);
+        ck_assert_int_eq(l1l2stab_push(s, &in), L1L2STAB_OK);
+        const int due = t == 5 ? 2 : t == 17 ? 100 : 0;
+        ck_assert_int_eq(l1l2stab_hurry(s, due), L1L2STAB_OK);
+        ck_assert_int_eq(l1l2stab_hurry(s, due / 2), L1L2STAB_OK); /* no more than were asked for already */
+        const int before = pulled, held = t + 1 - pulled;
+        while (l1l2stab_peek(s, NULL, NULL) == L1L2STAB_OK) {
+            ck_assert_int_eq(l1l2stab_pull(s, NULL, &info), L1L2STAB_OK);
+            ck_assert_uint_eq(info.index, (uint64_t)pulled++);
+            ck_assert(t != 5 || (info.flags & L1L2STAB_INFO_EARLY));
+            for (int k = 0; k < 4; k++) {
+                const L1L2Mat warp = mat_of(info.warp);
+                const L1L2Point p = l1l2_mat_apply(&warp, (L1L2Point){k & 1 ? 80 : -80, k & 2 ? 48 : -48});
+                ck_assert(fabs(p.x) <= 80 + 1e-9 && fabs(p.y) <= 48 + 1e-9);
+            }
+        }
+        ck_assert_int_eq(pulled - before, t == 5 ? 2 : t == 17 ? held : held == 10);
+    }
+    ck_assert_int_eq(pulled, 40 - 9); /* the window has filled up again, and nothing was lost */
+    l1l2stab_reset(s);
+    for (int t = 0; t < 10; t++) { /* a reset forgets that anything was hurried */
+        const L1L2StabFrame in = frame_of(clip, t);
+        ck_assert_int_eq(l1l2stab_push(s, &in), L1L2STAB_OK);
+        ck_assert_int_eq(l1l2stab_peek(s, NULL, NULL), t < 9 ? L1L2STAB_AGAIN : L1L2STAB_OK);
+    }
+    l1l2stab_free(&s);
+    free_clip(clip);
+}
+END_TEST
+
 START_TEST(reset_releases_and_is_as_good_as_new)
 {
     const L1L2StabConfig cfg = small_config(8);
@@ -235,6 +276,7 @@ int main(void)
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, n_frames_in_are_n_frames_out_each_released_once);
     tcase_add_test(tcase, a_frame_is_ready_when_the_window_is_full_and_not_before);
+    tcase_add_test(tcase, hurried_frames_are_ready_at_once_and_those_after_them_wait_again);
     tcase_add_test(tcase, reset_releases_and_is_as_good_as_new);
     tcase_add_test(tcase, calls_out_of_order_are_errors_and_change_nothing);
     tcase_add_test(tcase, the_infos_matrices_agree_with_each_other);

@@ -15,7 +15,7 @@
  *
  * Delay
  *   One frame in, one frame out, in order. Frame t can be pulled once frame t + window - 1 has been pushed, or after
- *   l1l2stab_finish(). The library holds at most `window` frames.
+ *   l1l2stab_finish(). The library holds at most `window` frames. l1l2stab_hurry() lets frames go sooner.
  *
  * Threads
  *   Calls on one L1L2Stab must not overlap. Different instances are independent; there is no global state.
@@ -203,6 +203,7 @@ typedef enum L1L2StabModel {
 #define L1L2STAB_INFO_PATH_START (1u << 0)    /* first frame of a path */
 #define L1L2STAB_INFO_MOTION_LOST (1u << 1)   /* the motion into this frame was not measured */
 #define L1L2STAB_INFO_PATH_FALLBACK (1u << 2) /* the solver did not converge: a feasible path was held instead */
+#define L1L2STAB_INFO_EARLY (1u << 3)         /* l1l2stab_hurry() decided the frame: its look-ahead was shorter */
 
 /* Where a frame's time went. */
 typedef enum L1L2StabStage {
@@ -274,6 +275,12 @@ L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2S
 
 /* No more input: what is held can be pulled until EOS. reset() starts anew. */
 L1L2STAB_API L1L2StabResult l1l2stab_finish(L1L2Stab *s);
+
+/* For a source that is late: the `frames` oldest of the held frames (all, if fewer are held) can be pulled from now on.
+ * What later windows would have decided is decided by the frames that have come: with a shorter look-ahead, smoothly
+ * joined to the frames before, inside the source as ever. The frames pushed afterwards wait for their whole window
+ * again. Costs a solve where it decides a frame; it can be called as often as frames are due. 0 does nothing. */
+L1L2STAB_API L1L2StabResult l1l2stab_hurry(L1L2Stab *s, int frames);
 
 /* Drop everything held (releasing it) and forget the path; config and memory are kept. Afterwards the instance is as
  * good as new: the same frames give the same output. */

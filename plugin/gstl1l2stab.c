@@ -41,6 +41,7 @@
 #include "gstl1l2staballoc.h"
 #include "gstl1l2stabcaps.h"
 #include "gstl1l2stabglue.h"
+#include "gstl1l2stablatency.h"
 #include "gstl1l2staboutput.h"
 #include "gstl1l2stabsettings.h"
 #include "gstl1l2stabstream.h"
@@ -48,68 +49,20 @@
 GST_DEBUG_CATEGORY (gst_l1l2_stab_debug);
 #define GST_CAT_DEFAULT gst_l1l2_stab_debug
 
-/* Where the caps do not say: too long a latency does less harm than none. */
-#define ASSUMED_FPS_N 25
-#define ASSUMED_FPS_D 1
-
 struct _GstL1L2Stab
 {
   GstBaseTransform parent;
 
   GstL1L2StabSettings settings; /* locks by itself */
-  GstClockTime latency;         /* under the object lock */
+  GstL1L2StabLatency latency;   /* so does this */
 
-  /* Under the sink pad's stream lock. */
+  /* Under the sink pad's stream lock, but for its position. */
   GstL1L2StabStream stream;
 };
 
 G_DEFINE_TYPE (GstL1L2Stab, gst_l1l2_stab, GST_TYPE_BASE_TRANSFORM);
 GST_ELEMENT_REGISTER_DEFINE (l1l2stab, "l1l2stab", GST_RANK_NONE,
     GST_TYPE_L1L2_STAB);
-
-/* --- latency --- */
-
-/* Exactly `window` frames. TRUE: it has changed. */
-static gboolean
-gst_l1l2_stab_set_latency (GstL1L2Stab * self, gint window, gint fps_n,
-    gint fps_d)
-{
-  GstClockTime latency;
-  gboolean changed;
-
-  if (fps_n <= 0 || fps_d <= 0) {
-    fps_n = ASSUMED_FPS_N;
-    fps_d = ASSUMED_FPS_D;
-  }
-  latency = gst_util_uint64_scale (window * GST_SECOND, fps_d, fps_n);
-
-  GST_OBJECT_LOCK (self);
-  changed = self->latency != latency;
-  self->latency = latency;
-  GST_OBJECT_UNLOCK (self);
-  return changed;
-}
-
-static gboolean
-gst_l1l2_stab_query_latency (GstL1L2Stab * self, GstQuery * query)
-{
-  GstClockTime least, most, latency;
-  gboolean live;
-
-  if (!gst_pad_peer_query (GST_BASE_TRANSFORM_SINK_PAD (self), query))
-    return FALSE;
-
-  GST_OBJECT_LOCK (self);
-  latency = self->latency;
-  GST_OBJECT_UNLOCK (self);
-
-  gst_query_parse_latency (query, &live, &least, &most);
-  least += latency;
-  if (GST_CLOCK_TIME_IS_VALID (most))
-    most += latency;
-  gst_query_set_latency (query, live, least, most);
-  return TRUE;
-}
 
 /* --- frames and events --- */
 
@@ -121,12 +74,13 @@ gst_l1l2_stab_transform (GstBaseTransform * trans, GstBuffer * input,
   return gst_l1l2_stab_stream_render (&GST_L1L2_STAB (trans)->stream, output);
 }
 
-/* While the window fills: OK and no buffer. DROPPED would mark the first one out as DISCONT. */
+/* The base class is left nothing to push. */
 static GstFlowReturn
 gst_l1l2_stab_generate_output (GstBaseTransform * trans, GstBuffer ** output)
 {
-  return gst_l1l2_stab_output_next (trans, &GST_L1L2_STAB (trans)->stream,
-      output);
+  *output = NULL;
+  return gst_l1l2_stab_output_push_ready (trans,
+      &GST_L1L2_STAB (trans)->stream);
 }
 
 static GstFlowReturn
@@ -169,11 +123,14 @@ gst_l1l2_stab_sink_event (GstBaseTransform * trans, GstEvent * event)
 
   switch (GST_EVENT_TYPE (event)) {
     case GST_EVENT_STREAM_START:
-    case GST_EVENT_SEGMENT:
     case GST_EVENT_SEGMENT_DONE:
     case GST_EVENT_GAP:
     case GST_EVENT_EOS:
       gst_l1l2_stab_output_drain (trans, &self->stream);
+      break;
+    case GST_EVENT_SEGMENT:
+      gst_l1l2_stab_output_drain (trans, &self->stream);
+      gst_l1l2_stab_output_new_segment (trans, &self->stream);
       break;
     case GST_EVENT_CAPS:
       /* set_caps() drains, if they are not the same as before. */
@@ -200,11 +157,16 @@ gst_l1l2_stab_query (GstBaseTransform * trans, GstPadDirection direction,
     GstQuery * query)
 {
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
+  const GstQueryType type = GST_QUERY_TYPE (query);
 
-  if (direction == GST_PAD_SRC && GST_QUERY_TYPE (query) == GST_QUERY_LATENCY)
-    return gst_l1l2_stab_query_latency (self, query);
+  if (direction == GST_PAD_SRC && type == GST_QUERY_LATENCY)
+    return gst_l1l2_stab_latency_query (&self->latency,
+        GST_BASE_TRANSFORM_SINK_PAD (trans), query);
+  if (direction == GST_PAD_SRC && type == GST_QUERY_POSITION
+      && gst_l1l2_stab_output_query_position (trans, &self->stream, query))
+    return TRUE;
   /* Upstream wants its buffers back. */
-  if (direction == GST_PAD_SINK && GST_QUERY_TYPE (query) == GST_QUERY_DRAIN)
+  if (direction == GST_PAD_SINK && type == GST_QUERY_DRAIN)
     gst_l1l2_stab_output_drain (trans, &self->stream);
   return GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)->query (trans,
       direction, query);
@@ -240,10 +202,7 @@ gst_l1l2_stab_set_caps (GstBaseTransform * trans, GstCaps * in_caps,
   if (!gst_l1l2_stab_stream_open (&self->stream, &settings, &in_info,
           &out_info))
     return FALSE;
-  if (gst_l1l2_stab_set_latency (self, settings.window,
-          GST_VIDEO_INFO_FPS_N (&in_info), GST_VIDEO_INFO_FPS_D (&in_info)))
-    gst_element_post_message (GST_ELEMENT_CAST (self),
-        gst_message_new_latency (GST_OBJECT_CAST (self)));
+  gst_l1l2_stab_latency_set (&self->latency, settings.window, in_caps);
   return TRUE;
 }
 
@@ -298,7 +257,7 @@ gst_l1l2_stab_start (GstBaseTransform * trans)
 
   /* A dropped input would be a hole in the camera's path. */
   gst_base_transform_set_qos_enabled (trans, FALSE);
-  gst_l1l2_stab_set_latency (self, settings.window, 0, 1);
+  gst_l1l2_stab_latency_set (&self->latency, settings.window, NULL);
   return TRUE;
 }
 
@@ -307,6 +266,7 @@ gst_l1l2_stab_stop (GstBaseTransform * trans)
 {
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
 
+  gst_l1l2_stab_output_new_segment (trans, &self->stream);
   gst_l1l2_stab_stream_close (&self->stream);
   gst_l1l2_stab_settings_release (&self->settings);
   return TRUE;
@@ -383,6 +343,7 @@ gst_l1l2_stab_init (GstL1L2Stab * self)
   GstBaseTransform *trans = GST_BASE_TRANSFORM_CAST (self);
 
   gst_l1l2_stab_settings_init (&self->settings, GST_OBJECT_CAST (self));
+  gst_l1l2_stab_latency_init (&self->latency, GST_ELEMENT_CAST (self));
   gst_l1l2_stab_stream_init (&self->stream, GST_ELEMENT_CAST (self));
 
   gst_base_transform_set_passthrough (trans, FALSE);

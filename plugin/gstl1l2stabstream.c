@@ -26,6 +26,7 @@ gst_l1l2_stab_stream_init (GstL1L2StabStream * stream, GstElement * element)
   stream->element = element;
   stream->log.object = GST_OBJECT_CAST (element);
   g_queue_init (&stream->events);
+  stream->position = GST_CLOCK_TIME_NONE;
 }
 
 static GstFlowReturn

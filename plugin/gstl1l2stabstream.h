@@ -23,6 +23,7 @@ typedef struct
   guint64 n_in;                 /* frames that came in ... */
   guint64 n_out;                /* ... and of these, went out or were dropped */
   GQueue events;                /* that wait for frames, oldest first */
+  GstClockTime position;        /* after the last frame out, in its segment; under the object lock; NONE: none yet */
 } GstL1L2StabStream;
 
 void gst_l1l2_stab_stream_init (GstL1L2StabStream * stream,

@@ -171,6 +171,64 @@ GST_START_TEST (the_first_frames_discontinuity_is_no_reason_to_mark_others)
 
 GST_END_TEST;
 
+GST_START_TEST (a_drain_before_the_window_is_full_marks_no_other_frame)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  GstBuffer *buffer = stab_frame_new (h, 0);
+  guint i;
+
+  GST_BUFFER_FLAG_SET (buffer, GST_BUFFER_FLAG_DISCONT);
+  gst_harness_push (h, buffer);
+  stab_push_frames (h, 1, 3);
+  gst_harness_push_event (h, segment_event (0));
+  stab_push_frames (h, 4, WINDOW);
+  for (i = 0; i < 5; i++) {
+    buffer = gst_harness_pull (h);
+    fail_unless_equals_int (GST_BUFFER_IS_DISCONT (buffer), i == 0);
+    gst_buffer_unref (buffer);
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+static GstClockTime
+position_of (GstHarness * h)
+{
+  GstQuery *query = gst_query_new_position (GST_FORMAT_TIME);
+  gint64 position;
+
+  fail_unless (gst_pad_peer_query (h->sinkpad, query));
+  gst_query_parse_position (query, NULL, &position);
+  gst_query_unref (query);
+  return position;
+}
+
+GST_START_TEST (the_position_is_that_of_the_last_frame_out)
+{
+  GstHarness *h = harness_with_frames (WINDOW - 1);
+  GstSegment segment;
+
+  fail_unless_equals_uint64 (position_of (h), 0);
+  stab_push_frames (h, WINDOW - 1, 3);
+  fail_unless_equals_uint64 (position_of (h), 3 * FRAME_DURATION);
+  gst_harness_push_event (h, gst_event_new_eos ());
+  fail_unless_equals_uint64 (position_of (h), (WINDOW + 2) * FRAME_DURATION);
+
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.start = segment.position = 50 * FRAME_DURATION;
+  segment.time = 70 * FRAME_DURATION;
+  gst_harness_push_event (h, gst_event_new_stream_start ("another"));
+  gst_harness_push_event (h, gst_event_new_segment (&segment));
+  fail_unless_equals_uint64 (position_of (h), 70 * FRAME_DURATION);
+  stab_push_frames (h, 50, 2);
+  gst_harness_push_event (h, gst_event_new_eos ());
+  fail_unless_equals_uint64 (position_of (h), 72 * FRAME_DURATION);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (a_drain_query_gives_upstream_its_frames_back)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
@@ -242,6 +300,8 @@ drain_suite (void)
       a_discontinuity_lets_the_old_frames_out_and_marks_the_new_one);
   tcase_add_test (tc,
       the_first_frames_discontinuity_is_no_reason_to_mark_others);
+  tcase_add_test (tc, a_drain_before_the_window_is_full_marks_no_other_frame);
+  tcase_add_test (tc, the_position_is_that_of_the_last_frame_out);
   tcase_add_test (tc, a_drain_query_gives_upstream_its_frames_back);
   tcase_add_test (tc, a_flush_drops_what_is_held_and_begins_anew);
   tcase_add_test (tc, a_drain_obeys_the_flow_downstream);

@@ -338,8 +338,8 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
     const L1L2Mat map = warp_map(s, &s->next.B, s->next.crop_ratio);
     const int64_t start_ns = l1l2_clock_ns();
     if (out) {
-        l1l2_warp_render(s->warp, &map, (const uint8_t *const *)held->frame.data, held->frame.stride, out->data,
-                         out->stride);
+        l1l2_warp_render(s->warp, &(L1L2WarpMap){.affine = map}, (const uint8_t *const *)held->frame.data,
+                         held->frame.stride, out->data, out->stride);
         out->pts = held->frame.pts;
         out->opaque = held->frame.opaque;
     }

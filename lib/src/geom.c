@@ -81,6 +81,14 @@ L1L2Mat l1l2_mat_rescale(L1L2Mat m, double factor)
     return m;
 }
 
+L1L2Mat l1l2_mat_mix(const L1L2Mat *a, const L1L2Mat *b, double weight)
+{
+    L1L2Mat out;
+    for (int i = 0; i < 9; i++)
+        out.m[i] = (1.0 - weight) * a->m[i] + weight * b->m[i];
+    return out;
+}
+
 double l1l2_mat_corner_distance(const L1L2Mat *a, const L1L2Mat *b, double half_w, double half_h)
 {
     double worst = 0.0;

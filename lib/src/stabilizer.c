@@ -12,6 +12,7 @@
 
 #include "clock.h"
 #include "config.h"
+#include "fade.h"
 #include "log.h"
 #include "mem.h"
 #include "path.h"
@@ -32,6 +33,7 @@ struct L1L2Stab {
     L1L2PathFrame next;
     uint64_t pulled;          /* frames since create or reset */
     L1L2Mat camera, smooth;   /* C_t and P_t of the last pulled frame relative to its path's first: for display only */
+    L1L2Fade bypass;
     double diagonal_px;
 };
 
@@ -94,6 +96,7 @@ L1L2StabResult l1l2stab_create(L1L2Stab **out, const L1L2StabConfig *cfg)
     s->cfg = resolved;
     s->format = l1l2_format_info(resolved.format);
     s->diagonal_px = hypot(resolved.width, resolved.height);
+    s->bypass.length = L1L2STAB_BYPASS_FRAMES;
     l1l2_config_output_size(&resolved, &s->out_width, &s->out_height);
     result = build(s);
     if (result != L1L2STAB_OK) {
@@ -153,17 +156,32 @@ static bool motion_valid(const L1L2Stab *s, const double motion[9])
     return valid;
 }
 
-/* The frames between given motions are not tracked: a measured one after them starts from nothing. */
-static L1L2MotionResult given_motion(L1L2Stab *s, const double motion[9], bool starts_path)
+static void export_px(const L1L2Stab *s, L1L2Mat m, double out[9])
 {
-    L1L2MotionResult result = {.F = l1l2_mat_identity(), .model = L1L2STAB_MODEL_NONE};
-    if (!starts_path) {
-        memcpy(result.F.m, motion, sizeof result.F.m);
-        result.F = l1l2_mat_rescale(result.F, 1.0 / s->diagonal_px);
-        result.model = L1L2STAB_MODEL_GIVEN;
-    }
+    m = l1l2_mat_rescale(m, s->diagonal_px);
+    memcpy(out, m.m, sizeof m.m);
+}
+
+/* The frames between given motions are not tracked: a measured one after them starts from nothing. */
+static L1L2MotionResult given_motion(L1L2Stab *s, bool starts_path)
+{
     l1l2_motion_reset(s->motion);
-    return result;
+    return (L1L2MotionResult){
+        .F = l1l2_mat_identity(),
+        .model = starts_path ? L1L2STAB_MODEL_NONE : L1L2STAB_MODEL_GIVEN,
+    };
+}
+
+/* The path is made of the motion that info tells, to the bit: whoever gives it back gets the same path. */
+static void settle_motion(const L1L2Stab *s, const L1L2StabFrame *in, L1L2Held *held)
+{
+    L1L2MotionResult *motion = &held->motion;
+    if (motion->model == L1L2STAB_MODEL_GIVEN)
+        memcpy(held->F_px, in->motion, sizeof held->F_px);
+    else
+        export_px(s, motion->F, held->F_px);
+    memcpy(motion->F.m, held->F_px, sizeof held->F_px);
+    motion->F = l1l2_mat_rescale(motion->F, 1.0 / s->diagonal_px);
 }
 
 L1L2StabResult l1l2stab_set_lambda(L1L2Stab *s, double lambda)
@@ -190,6 +208,14 @@ L1L2StabResult l1l2stab_set_crop_ratio(L1L2Stab *s, double crop_ratio)
     return L1L2STAB_OK;
 }
 
+L1L2StabResult l1l2stab_set_bypass(L1L2Stab *s, int bypass)
+{
+    if (!s)
+        return L1L2STAB_ERR_ARGUMENT;
+    s->bypass.on = bypass != 0;
+    return L1L2STAB_OK;
+}
+
 L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
 {
     if (!s || !in || (!in->motion && !planes_given(s, in)) || (in->motion && !motion_valid(s, in->motion)))
@@ -202,7 +228,7 @@ L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
     L1L2MotionResult motion;
     L1L2StabResult result = L1L2STAB_OK;
     if (in->motion)
-        motion = given_motion(s, in->motion, starts_path);
+        motion = given_motion(s, starts_path);
     else
         result = l1l2_motion_push(s->motion, in->data[0], in->stride[0], starts_path, &motion);
     if (result != L1L2STAB_OK) {
@@ -211,8 +237,9 @@ L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
     }
     L1L2Held *held = l1l2_ring_append(&s->ring);
     *held = (L1L2Held){.frame = *in, .motion = motion};
+    settle_motion(s, in, held);
     const int64_t start_ns = l1l2_clock_ns();
-    l1l2_path_push(s->path, &motion.F, motion.model == L1L2STAB_MODEL_NONE);
+    l1l2_path_push(s->path, &held->motion.F, motion.model == L1L2STAB_MODEL_NONE);
     l1l2_ring_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
     return L1L2STAB_OK;
 }
@@ -275,12 +302,6 @@ static L1L2Mat warp_map(const L1L2Stab *s, const L1L2Mat *B, double crop_ratio)
     return l1l2_mat_mul(l1l2_mat_rescale(*B, s->diagonal_px), l1l2_mat_diagonal(zoom, zoom));
 }
 
-static void export_px(const L1L2Stab *s, L1L2Mat m, double out[9])
-{
-    m = l1l2_mat_rescale(m, s->diagonal_px);
-    memcpy(out, m.m, sizeof m.m);
-}
-
 static void describe(const L1L2Stab *s, const L1L2Held *held, const L1L2Mat *map, L1L2StabInfo *info)
 {
     const L1L2PathFrame *f = &s->next;
@@ -298,7 +319,7 @@ static void describe(const L1L2Stab *s, const L1L2Held *held, const L1L2Mat *map
         .model = held->motion.model,
         .stage_ns = {held->motion.scale_ns, held->motion.track_ns, held->motion.fit_ns, held->solve_ns, 0},
     };
-    export_px(s, f->F, info->F);
+    memcpy(info->F, held->F_px, sizeof held->F_px);
     export_px(s, f->B, info->B);
     export_px(s, f->S, info->S);
     export_px(s, s->camera, info->C);
@@ -335,16 +356,19 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
         return L1L2STAB_ERR_ARGUMENT;
     fetch_path(s);
     const L1L2Held *held = l1l2_ring_at(&s->ring, 0);
-    const L1L2Mat map = warp_map(s, &s->next.B, s->next.crop_ratio);
+    const L1L2Mat stable = warp_map(s, &s->next.B, s->next.crop_ratio), untouched = l1l2_mat_identity();
+    const double bypass = l1l2_fade_next(&s->bypass, s->next.path_index == 0);
+    const L1L2Mat map = l1l2_mat_mix(&stable, &untouched, bypass);
     const int64_t start_ns = l1l2_clock_ns();
     if (out) {
-        l1l2_warp_render(s->warp, &(L1L2WarpMap){.affine = map}, (const uint8_t *const *)held->frame.data,
-                         held->frame.stride, out->data, out->stride);
+        l1l2_warp_render(s->warp, &map, (const uint8_t *const *)held->frame.data, held->frame.stride, out->data,
+                         out->stride);
         out->pts = held->frame.pts;
         out->opaque = held->frame.opaque;
     }
     if (info) {
         describe(s, held, &map, info);
+        info->bypass = bypass;
         info->stage_ns[L1L2STAB_STAGE_WARP] = out ? l1l2_clock_ns() - start_ns : 0;
     }
     s->decided = false;

@@ -238,7 +238,8 @@ typedef struct L1L2StabInfo {
     double solver_bound;    /* the objective is at most this far above its optimum; infinite for OSQP alone */
     double solver_residual[2]; /* OSQP's primal and dual residual; 0 where it did not run */
     double quality;          /* of F, [0, 1]: 0 not measured, 1 all over the frame the points agree */
-    uint8_t reserved[56];
+    double bypass;           /* of what was rendered, [0, 1]: 0 stabilized, 1 untouched */
+    uint8_t reserved[48];
 } L1L2StabInfo;
 
 /* Fill *cfg with the defaults; pass sizeof *cfg, so that a program built against an older header goes on working. */
@@ -263,6 +264,12 @@ L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_push(L1L2Stab *s, const
  * by at most 0.005 a frame, so the picture does not jump; output_size CROP keeps the config's size. */
 L1L2STAB_API L1L2StabResult l1l2stab_set_lambda(L1L2Stab *s, double lambda);
 L1L2STAB_API L1L2StabResult l1l2stab_set_crop_ratio(L1L2Stab *s, double crop_ratio);
+
+/* bypass != 0: the frames that are pulled from now on come out untouched, in spite of the delay; 0: stabilized again.
+ * The picture passes over within L1L2STAB_BYPASS_FRAMES frames, or at once where a path starts, and stays inside the
+ * source on the way. Beneath it the path goes on. Untouched means: the whole frame; with output_size CROP its middle. */
+#define L1L2STAB_BYPASS_FRAMES 30
+L1L2STAB_API L1L2StabResult l1l2stab_set_bypass(L1L2Stab *s, int bypass);
 
 /* Which frame would pull() give next? OK sets *pts and *opaque (each may be NULL); else as pull(). */
 L1L2STAB_API L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque);

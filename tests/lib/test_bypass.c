@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT */
+/* The way from stabilized to untouched and back, in spite of the delay; and motions that are given back. */
+#include "fade.h"
+#include "stabilizer_fixture.h"
+
+enum { WINDOW = 8, FRAMES = 100 };
+
+START_TEST(a_fade_is_exact_at_both_ends_and_never_jumps)
+{
+    L1L2Fade fade = {.length = 30};
+    double last = 0.0;
+    for (int i = 0; i < 200; i++) {
+        fade.on = i % 70 < 45; /* is thrown back on its way, too */
+        const double weight = l1l2_fade_next(&fade, false);
+        ck_assert(weight >= 0.0 && weight <= 1.0 && fabs(weight - last) <= 1.5 / 30 + 1e-12);
+        if (i % 70 == 29)
+            ck_assert(weight == 1.0);
+        last = weight;
+    }
+    fade.on = false;
+    ck_assert(l1l2_fade_next(&fade, true) == 0.0);
+    fade.on = true;
+    ck_assert(l1l2_fade_next(&fade, true) == 1.0);
+}
+END_TEST
+
+/* A clip with the bypass on from pull `on` to pull `off`. */
+static void run(L1L2Stab *s, Clip *clip, int on, int off, L1L2StabInfo *info, SynthPicture *out)
+{
+    int pulled = 0;
+    for (int t = 0; t < clip->frames + WINDOW - 1; t++) {
+        if (t < clip->frames) {
+            const L1L2StabFrame in = frame_of(clip, t);
+            ck_assert_int_eq(l1l2stab_push(s, &in), L1L2STAB_OK);
+        } else {
+            ck_assert_int_eq(l1l2stab_finish(s), L1L2STAB_OK);
+        }
+        if (t < WINDOW - 1)
+            continue;
+        L1L2StabFrame picture = {0};
+        memcpy(picture.data, out[pulled].data, sizeof picture.data);
+        memcpy(picture.stride, out[pulled].stride, sizeof picture.stride);
+        l1l2stab_set_bypass(s, pulled >= on && pulled < off);
+        ck_assert_int_eq(l1l2stab_pull(s, &picture, &info[pulled]), L1L2STAB_OK);
+        pulled++;
+    }
+}
+
+static void new_pictures(SynthPicture *out, const L1L2StabConfig *cfg)
+{
+    int width, height;
+    l1l2stab_config_output_size(cfg, &width, &height);
+    for (int t = 0; t < FRAMES; t++)
+        out[t] = synth_picture_new(cfg->format, width, height);
+}
+
+START_TEST(a_bypass_is_at_once_and_soft_and_leaves_the_path_alone)
+{
+    const L1L2StabConfig cfg = small_config(WINDOW);
+    const int on = 20, off = 70;
+    static L1L2StabInfo plain[FRAMES], info[FRAMES];
+    static SynthPicture plain_out[FRAMES], out[FRAMES];
+    Clip *clip = new_clip(FRAMES, cfg.format);
+    L1L2Stab *s = create(&cfg);
+    new_pictures(plain_out, &cfg);
+    new_pictures(out, &cfg);
+    run(s, clip, FRAMES, FRAMES, plain, plain_out);
+    l1l2stab_reset(s);
+    run(s, clip, on, off, info, out);
+    const size_t luma = WIDTH * HEIGHT;
+    for (int t = 0; t < FRAMES; t++) {
+        const bool whole = t >= on + L1L2STAB_BYPASS_FRAMES - 1 && t < off;
+        const bool stable = t < on || t >= off + L1L2STAB_BYPASS_FRAMES - 1;
+        ck_assert_mem_eq(info[t].B, plain[t].B, sizeof info[t].B);
+        ck_assert((info[t].bypass == 1.0) == whole && (info[t].bypass == 0.0) == stable);
+        if (whole)
+            ck_assert_mem_eq(out[t].data[0], clip->picture[t].data[0], luma);
+        if (stable)
+            ck_assert_mem_eq(out[t].data[0], plain_out[t].data[0], luma);
+        const L1L2Mat now = mat_of(info[t].warp), before = mat_of(info[t ? t - 1 : 0].warp);
+        const L1L2Mat plain_now = mat_of(plain[t].warp), plain_before = mat_of(plain[t ? t - 1 : 0].warp);
+        const double moved = l1l2_mat_corner_distance(&now, &before, WIDTH / 2.0, HEIGHT / 2.0);
+        const double plainly = l1l2_mat_corner_distance(&plain_now, &plain_before, WIDTH / 2.0, HEIGHT / 2.0);
+        /* What the path does, and 5 % a frame of the way to the whole picture. */
+        ck_assert_double_le(moved, plainly + 1.5 / L1L2STAB_BYPASS_FRAMES * hypot(WIDTH, HEIGHT) * 0.25);
+    }
+    for (int t = 0; t < FRAMES; t++) {
+        synth_picture_free(&out[t]);
+        synth_picture_free(&plain_out[t]);
+    }
+    l1l2stab_free(&s);
+    free_clip(clip);
+}
+END_TEST
+
+START_TEST(no_sample_leaves_the_source_on_the_way)
+{
+    L1L2StabConfig cfg = small_config(WINDOW);
+    cfg.output_size = (L1L2StabOutputSize)_i;
+    static L1L2StabInfo info[FRAMES];
+    static SynthPicture out[FRAMES];
+    int width, height, between = 0;
+    l1l2stab_config_output_size(&cfg, &width, &height);
+    Clip *clip = new_clip(FRAMES, cfg.format);
+    L1L2Stab *s = create(&cfg);
+    new_pictures(out, &cfg);
+    run(s, clip, 20, 60, info, out);
+    for (int t = 0; t < FRAMES; t++) {
+        const L1L2Mat map = mat_of(info[t].warp);
+        between += info[t].bypass > 0.0 && info[t].bypass < 1.0;
+        for (int k = 0; k < 4; k++) {
+            const L1L2Point corner = {(k & 1 ? width : -width) / 2.0, (k & 2 ? height : -height) / 2.0};
+            const L1L2Point p = l1l2_mat_apply(&map, corner);
+            ck_assert_double_le(fabs(p.x), WIDTH / 2.0 + 1e-9);
+            ck_assert_double_le(fabs(p.y), HEIGHT / 2.0 + 1e-9);
+        }
+        synth_picture_free(&out[t]);
+    }
+    ck_assert_int_eq(between, 2 * (L1L2STAB_BYPASS_FRAMES - 1));
+    l1l2stab_free(&s);
+    free_clip(clip);
+}
+END_TEST
+
+START_TEST(motions_that_are_given_back_make_the_same_path_to_the_bit)
+{
+    L1L2StabConfig cfg = small_config(WINDOW);
+    static L1L2StabInfo measured[FRAMES], given[FRAMES];
+    Clip *clip = new_clip(FRAMES, cfg.format);
+    L1L2Stab *s = create(&cfg);
+    ck_assert_int_eq(stabilize(s, clip, measured, NULL), FRAMES);
+    l1l2stab_reset(s);
+    int pulled = 0;
+    for (int t = 0; t < FRAMES; t++) {
+        L1L2StabFrame in = frame_of(clip, t);
+        in.motion = measured[t].F;
+        in.flags = measured[t].flags & L1L2STAB_INFO_PATH_START ? L1L2STAB_FRAME_DISCONT : 0;
+        ck_assert_int_eq(l1l2stab_push(s, &in), L1L2STAB_OK);
+        if (l1l2stab_pull(s, NULL, &given[pulled]) == L1L2STAB_OK)
+            pulled++;
+    }
+    l1l2stab_finish(s);
+    while (l1l2stab_pull(s, NULL, &given[pulled]) == L1L2STAB_OK)
+        pulled++;
+    ck_assert_int_eq(pulled, FRAMES);
+    for (int t = 0; t < FRAMES; t++) {
+        ck_assert_mem_eq(given[t].F, measured[t].F, sizeof given[t].F);
+        ck_assert_mem_eq(given[t].warp, measured[t].warp, sizeof given[t].warp);
+        ck_assert_int_eq(given[t].model, t ? L1L2STAB_MODEL_GIVEN : L1L2STAB_MODEL_NONE);
+    }
+    l1l2stab_free(&s);
+    free_clip(clip);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("bypass");
+    TCase *tc = tcase_create("bypass");
+    tcase_add_test(tc, a_fade_is_exact_at_both_ends_and_never_jumps);
+    tcase_add_test(tc, a_bypass_is_at_once_and_soft_and_leaves_the_path_alone);
+    tcase_add_loop_test(tc, no_sample_leaves_the_source_on_the_way, L1L2STAB_OUTPUT_SIZE_INPUT,
+                        L1L2STAB_OUTPUT_SIZE_CROP + 1);
+    tcase_add_test(tc, motions_that_are_given_back_make_the_same_path_to_the_bit);
+    suite_add_tcase(suite, tc);
+    return checkx_run(suite);
+}

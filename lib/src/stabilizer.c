@@ -361,8 +361,8 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
     const L1L2Mat map = l1l2_mat_mix(&stable, &untouched, bypass);
     const int64_t start_ns = l1l2_clock_ns();
     if (out) {
-        l1l2_warp_render(s->warp, &map, (const uint8_t *const *)held->frame.data, held->frame.stride, out->data,
-                         out->stride);
+        l1l2_warp_render(s->warp, &(L1L2WarpMap){.affine = map}, (const uint8_t *const *)held->frame.data,
+                         held->frame.stride, out->data, out->stride);
         out->pts = held->frame.pts;
         out->opaque = held->frame.opaque;
     }

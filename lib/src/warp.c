@@ -25,6 +25,7 @@ struct L1L2Warp {
 /* One plane of one frame. */
 typedef struct PlaneJob {
     L1L2WarpAffine affine;
+    L1L2WarpMeshPlane mesh; /* in place of `affine`, if it has a mesh */
     L1L2WarpPlane src;
     uint8_t *dst;
     ptrdiff_t dst_stride;
@@ -81,7 +82,10 @@ static void render_band(const PlaneJob *job, const L1L2WarpKernel *kernel, int b
         uint8_t *row = job->dst + v * job->dst_stride;
         for (int u = 0; u < job->width; u += RUN_SAMPLES) {
             const int count = job->width - u < RUN_SAMPLES ? job->width - u : RUN_SAMPLES;
-            l1l2_warp_affine_run(&job->affine, u, v, count, x, y);
+            if (job->mesh.mesh)
+                l1l2_warp_mesh_run(&job->mesh, u, v, count, x, y);
+            else
+                l1l2_warp_affine_run(&job->affine, u, v, count, x, y);
             job->run(&job->src, kernel, x, y, count, row + u * job->sample_bytes);
         }
     }
@@ -97,7 +101,7 @@ static void render_part(void *context, int index)
     render_band(&job->plane[plane], job->kernel, index);
 }
 
-void l1l2_warp_render(L1L2Warp *w, const L1L2Mat *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
+void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
                       uint8_t *const dst[4], const ptrdiff_t dst_stride[4])
 {
     const L1L2WarpConfig *cfg = &w->cfg;
@@ -111,7 +115,8 @@ void l1l2_warp_render(L1L2Warp *w, const L1L2Mat *map, const uint8_t *const src[
         const L1L2WarpGrid to = l1l2_warp_grid(format, i, cfg->chroma_site, cfg->out_width, cfg->out_height);
         PlaneJob *plane = &job.plane[i];
         *plane = (PlaneJob){
-            .affine = l1l2_warp_affine(map, &to, &from),
+            .affine = l1l2_warp_affine(&map->affine, &to, &from),
+            .mesh = {map->mesh, to, from},
             .src = {src[i], src_stride[i], l1l2_plane_size(cfg->in_width, sub_x),
                     l1l2_plane_size(cfg->in_height, sub_y), format->depth, format->shift},
             .dst = dst[i],

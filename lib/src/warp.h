@@ -16,8 +16,15 @@
 
 #include "format.h"
 #include "geom.h"
+#include "warp_mesh.h"
 
 typedef struct L1L2Warp L1L2Warp;
+
+/* Output pixel -> source pixel, both with the origin at their picture's centre. */
+typedef struct L1L2WarpMap {
+    L1L2Mat affine;           /* finite, last row 0 0 1; not looked at where there is a mesh */
+    const L1L2WarpMesh *mesh; /* of the output's size; or NULL */
+} L1L2WarpMap;
 
 typedef struct L1L2WarpConfig {
     const L1L2FormatInfo *format;
@@ -33,9 +40,8 @@ typedef struct L1L2WarpConfig {
 L1L2StabResult l1l2_warp_create(L1L2Warp **out, const L1L2WarpConfig *cfg);
 void l1l2_warp_free(L1L2Warp *w);
 
-/* map: output pixel -> source pixel, both with the origin at their picture's centre; affine (last row 0 0 1), finite.
- * src and dst must not overlap. The same input gives the same bytes whatever the number of threads. */
-void l1l2_warp_render(L1L2Warp *w, const L1L2Mat *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
+/* src and dst must not overlap. The same input gives the same bytes whatever the number of threads. */
+void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
                       uint8_t *const dst[4], const ptrdiff_t dst_stride[4]);
 
 #endif

@@ -38,13 +38,19 @@ L1L2WarpAffine l1l2_warp_affine(const L1L2Mat *map, const L1L2WarpGrid *dst, con
     };
 }
 
-/* Exact: steps in 64 bits. Unsigned, for its shift is defined: the bits that are kept are the signed one's. */
-static void run_exact(double start, double step, int u, int count, int32_t *out)
+/* To the nearest: at 1.5 * 2^52 a double's unit is 1. Calls of floor() would take a quarter of a mesh's time. */
+static inline uint64_t to_fixed(double at)
 {
-    const double one = 4294967296.0;
+    const double one = 4294967296.0, ground = 6755399441055744.0;
+    return (uint64_t)((int64_t)(at * one + ground) - (int64_t)ground);
+}
+
+/* Exact: steps in 64 bits. Unsigned, for its shift is defined: the bits that are kept are the signed one's. */
+static inline void run_exact(double start, double step, int u, int count, int32_t *out)
+{
     const int shift = FRACTION_BITS - L1L2_WARP_PHASE_BITS;
-    const uint64_t step_fixed = (uint64_t)(int64_t)floor(step * one + 0.5);
-    uint64_t at = (uint64_t)(int64_t)floor(start * one + 0.5) + (uint64_t)u * step_fixed + (1u << (shift - 1));
+    const uint64_t step_fixed = to_fixed(step);
+    uint64_t at = to_fixed(start) + (uint64_t)u * step_fixed + (1u << (shift - 1));
     for (int i = 0; i < count; i++, at += step_fixed)
         out[i] = (int32_t)(uint32_t)(at >> shift);
 }
@@ -72,4 +78,70 @@ void l1l2_warp_affine_run(const L1L2WarpAffine *affine, int u, int v, int count,
 {
     run_axis(affine->x, u, v, count, x);
     run_axis(affine->y, u, v, count, y);
+}
+
+/* What turns a mesh's node into a position in samples of the source plane, by axis: node * scale + shift. */
+typedef struct ToSource {
+    double scale_x, shift_x, scale_y, shift_y;
+} ToSource;
+
+static inline double saturate(double at)
+{
+    const double near = at < FAR ? at : FAR;
+    return near > -FAR ? near : -FAR;
+}
+
+/* Between two nodes, one above the other. */
+static inline L1L2Point node_at(const L1L2Point *upper, const L1L2Point *lower, double share, const ToSource *to)
+{
+    const double x = (1.0 - share) * upper->x + share * lower->x;
+    const double y = (1.0 - share) * upper->y + share * lower->y;
+    return (L1L2Point){saturate(x * to->scale_x + to->shift_x), saturate(y * to->scale_y + to->shift_y)};
+}
+
+/* The first sample of cell c's columns. */
+static int first_of_cell(double width, double origin, int c)
+{
+    const double border = width * c - origin;
+    const int whole = (int)border;
+    return whole < border ? whole + 1 : whole;
+}
+
+/* Cell by cell: in each, positions are a line from its left to its right side. */
+void l1l2_warp_mesh_run(const L1L2WarpMeshPlane *plane, int u, int v, int count, int32_t *x, int32_t *y)
+{
+    const L1L2WarpMesh *mesh = plane->mesh;
+    const L1L2WarpGrid *dst = &plane->dst, *src = &plane->src;
+    const int last_column = mesh->columns - 2, last_row = mesh->rows - 2; /* of cells */
+    const double down = (dst->first_y + dst->step_y * v) * (mesh->rows - 1) / dst->size_y;
+    const int row = down < last_row ? (int)down : last_row;
+    const double share = down - row;
+    const L1L2Point *upper = mesh->node + row * mesh->columns, *lower = upper + mesh->columns;
+    const ToSource to = {1.0 / src->step_x, (src->size_x / 2.0 - src->first_x) / src->step_x,
+                         1.0 / src->step_y, (src->size_y / 2.0 - src->first_y) / src->step_y};
+    const double width = dst->size_x / (mesh->columns - 1) / dst->step_x; /* of a cell, samples */
+    const double origin = dst->first_x / dst->step_x;                     /* of sample 0 from the left border */
+    const double slope = 1.0 / width;
+
+    int c = (int)((origin + u) * slope);
+    c = c < last_column ? c : last_column;
+    while (c > 0 && first_of_cell(width, origin, c) > u)
+        c--;
+    int first = first_of_cell(width, origin, c), next = first;
+    L1L2Point left = node_at(upper + c, lower + c, share, &to);
+    for (const int end = u + count; u < end; c++, first = next) {
+        next = c < last_column ? first_of_cell(width, origin, c + 1) : end;
+        const int stop = next < end ? next : end;
+        const L1L2Point right = node_at(upper + c + 1, lower + c + 1, share, &to);
+        const double step_x = (right.x - left.x) * slope, step_y = (right.y - left.y) * slope;
+        const double offset = first + origin - width * c; /* of the cell's first sample from its left side */
+        if (stop > u) {
+            run_exact(left.x + offset * step_x, step_x, u - first, stop - u, x);
+            run_exact(left.y + offset * step_y, step_y, u - first, stop - u, y);
+            x += stop - u;
+            y += stop - u;
+            u = stop;
+        }
+        left = right;
+    }
 }

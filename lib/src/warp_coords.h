@@ -5,8 +5,8 @@
  * Two coordinates are at play. In the frame: luma pixels in [0, W] x [0, H], pixel centres at half-integers. In a
  * plane: sample j is at j. It lies at the frame's `first + step * j`, by axis: L1L2WarpGrid.
  *
- * A generator writes positions for a kernel to read: fixed point, L1L2_WARP_PHASE_BITS fractional bits. Another kind of
- * map (a homography, a map for each row) is another generator with the same output.
+ * A generator writes positions for a kernel to read: fixed point, L1L2_WARP_PHASE_BITS fractional bits. There are two,
+ * for affine maps and for meshes (warp_mesh.h).
  */
 #ifndef L1L2_WARP_COORDS_H
 #define L1L2_WARP_COORDS_H
@@ -15,6 +15,7 @@
 
 #include "format.h"
 #include "geom.h"
+#include "warp_mesh.h"
 
 enum {
     L1L2_WARP_PHASE_BITS = 10, /* 1/1024 px: what rounding a position costs stays well under one grey level */
@@ -42,5 +43,14 @@ L1L2WarpAffine l1l2_warp_affine(const L1L2Mat *map, const L1L2WarpGrid *dst, con
 /* Positions of output samples (u .. u + count - 1, v). They do not depend on where a run begins. Far outside they
  * saturate, at some 500000 samples from the plane's corner. */
 void l1l2_warp_affine_run(const L1L2WarpAffine *affine, int u, int v, int count, int32_t *x, int32_t *y);
+
+/* A mesh, as two planes have it: output samples are at `dst`, positions are samples of `src`. */
+typedef struct L1L2WarpMeshPlane {
+    const L1L2WarpMesh *mesh;
+    L1L2WarpGrid dst, src;
+} L1L2WarpMeshPlane;
+
+/* As l1l2_warp_affine_run(). */
+void l1l2_warp_mesh_run(const L1L2WarpMeshPlane *plane, int u, int v, int count, int32_t *x, int32_t *y);
 
 #endif

@@ -52,7 +52,7 @@ static int compare(const void *a, const void *b)
 static void print_times(const char *what, double *ms)
 {
     qsort(ms, FRAMES, sizeof *ms, compare);
-    printf("  %-28s best %7.3f   median %7.3f\n", what, ms[0], ms[FRAMES / 2]);
+    printf("  %-30s best %7.3f   median %7.3f\n", what, ms[0], ms[FRAMES / 2]);
 }
 
 static void bench_copy(const L1L2FormatInfo *format, const Picture *src, Picture *dst)
@@ -67,24 +67,30 @@ static void bench_copy(const L1L2FormatInfo *format, const Picture *src, Picture
     print_times("memcpy", ms);
 }
 
-static void bench_kernel(const L1L2WarpConfig *cfg, const char *name, const Picture *src, Picture *dst)
+static void bench_kernel(const L1L2WarpConfig *cfg, const char *name, bool by_mesh, const Picture *src, Picture *dst)
 {
     L1L2Warp *warp;
-    if (l1l2_warp_create(&warp, cfg) != L1L2STAB_OK)
+    L1L2WarpMesh mesh;
+    if (l1l2_warp_create(&warp, cfg) != L1L2STAB_OK || !l1l2_warp_mesh_init(&mesh, cfg->out_width, cfg->out_height))
         exit(EXIT_FAILURE);
     double ms[FRAMES];
     for (int t = -2; t < FRAMES; t++) {
         const double angle = 0.0174 * sin(0.7 * t), zoom = 0.9;
-        const L1L2Mat map = l1l2_mat_similarity(zoom * cos(angle), zoom * sin(angle), 5.0 * sin(t), 5.0 * cos(t));
+        const L1L2WarpMap map = {
+            .affine = l1l2_mat_similarity(zoom * cos(angle), zoom * sin(angle), 5.0 * sin(t), 5.0 * cos(t)),
+            .mesh = by_mesh ? &mesh : NULL,
+        };
+        l1l2_warp_mesh_set(&mesh, &map.affine);
         const int64_t start = l1l2_clock_ns();
         l1l2_warp_render(warp, &map, (const uint8_t *const *)src->data, src->stride, dst->data, dst->stride);
         if (t >= 0)
             ms[t] = (double)(l1l2_clock_ns() - start) * 1e-6;
     }
     char what[64];
-    snprintf(what, sizeof what, "%s%s, %d thread%s", name, cfg->plain ? ", plain C" : "", cfg->threads,
-             cfg->threads > 1 ? "s" : "");
+    snprintf(what, sizeof what, "%s%s%s, %d thread%s", name, by_mesh ? ", mesh" : "", cfg->plain ? ", plain C" : "",
+             cfg->threads, cfg->threads > 1 ? "s" : "");
     print_times(what, ms);
+    l1l2_warp_mesh_clear(&mesh);
     l1l2_warp_free(warp);
 }
 
@@ -100,7 +106,9 @@ static void bench(L1L2StabFormat id, int width, int height)
             const L1L2WarpConfig cfg = {.format = format, .in_width = width, .in_height = height, .out_width = width,
                                         .out_height = height, .interpolation = (L1L2StabInterpolation)k,
                                         .threads = way % 2 + 1, .plain = way / 2};
-            bench_kernel(&cfg, kernels[k], &src, &dst);
+            bench_kernel(&cfg, kernels[k], false, &src, &dst);
+            if (way == 0)
+                bench_kernel(&cfg, kernels[k], true, &src, &dst);
         }
     free_picture(&src);
     free_picture(&dst);

@@ -97,7 +97,7 @@ static inline L1L2WarpConfig warp_config(const Picture *src, const Picture *dst)
     };
 }
 
-static inline void warp_picture(const L1L2WarpConfig *cfg, const L1L2Mat *map, const Picture *src, Picture *dst)
+static inline void warp_picture_by(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, const Picture *src, Picture *dst)
 {
     L1L2Warp *warp;
     ck_assert_int_eq(l1l2_warp_create(&warp, cfg), L1L2STAB_OK);
@@ -112,6 +112,11 @@ static inline void warp_picture(const L1L2WarpConfig *cfg, const L1L2Mat *map, c
     }
     l1l2_warp_render(warp, map, from, from_stride, to, to_stride);
     l1l2_warp_free(warp);
+}
+
+static inline void warp_picture(const L1L2WarpConfig *cfg, const L1L2Mat *map, const Picture *src, Picture *dst)
+{
+    warp_picture_by(cfg, &(L1L2WarpMap){.affine = *map}, src, dst);
 }
 
 static inline double uniform(L1L2Rng *rng, double low, double high)

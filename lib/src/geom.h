@@ -45,8 +45,8 @@ bool l1l2_mat_is_identity(const L1L2Mat *m);
 /* The same map in a unit in which lengths read `factor` times as large: diagonals to pixels is factor = diagonal_px. */
 L1L2Mat l1l2_mat_rescale(L1L2Mat m, double factor);
 
-/* (1 - weight) a + weight b, element by element; exact at 0 and 1. Where a and b take a point into a convex set, so does
- * this: affine maps, and projective ones with m[8] = 1 and a positive denominator there. */
+/* (1 - weight) a + weight b, element by element; exact at 0 and 1. Where a and b take a point into a convex set, so
+ * does this: affine maps, and projective ones with m[8] = 1 and a positive denominator there. */
 L1L2Mat l1l2_mat_mix(const L1L2Mat *a, const L1L2Mat *b, double weight);
 
 /* The largest distance between the images of the four corners (+-half_w, +-half_h) under a and b. */

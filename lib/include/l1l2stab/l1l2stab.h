@@ -267,7 +267,7 @@ L1L2STAB_API L1L2StabResult l1l2stab_set_crop_ratio(L1L2Stab *s, double crop_rat
 
 /* bypass != 0: the frames that are pulled from now on come out untouched, in spite of the delay; 0: stabilized again.
  * The picture passes over within L1L2STAB_BYPASS_FRAMES frames, or at once where a path starts, and stays inside the
- * source on the way. Beneath it the path goes on. Untouched means: the whole frame; with output_size CROP its middle. */
+ * source on the way. Beneath it the path goes on. Untouched is the whole frame; with output_size CROP its middle. */
 #define L1L2STAB_BYPASS_FRAMES 30
 L1L2STAB_API L1L2StabResult l1l2stab_set_bypass(L1L2Stab *s, int bypass);
 

@@ -40,6 +40,7 @@
 
 #include "gstl1l2staballoc.h"
 #include "gstl1l2stabcaps.h"
+#include "gstl1l2stabcarry.h"
 #include "gstl1l2stabglue.h"
 #include "gstl1l2stablatency.h"
 #include "gstl1l2staboutput.h"
@@ -71,7 +72,17 @@ static GstFlowReturn
 gst_l1l2_stab_transform (GstBaseTransform * trans, GstBuffer * input,
     GstBuffer * output)
 {
-  return gst_l1l2_stab_stream_render (&GST_L1L2_STAB (trans)->stream, output);
+  GstL1L2StabStream *stream = &GST_L1L2_STAB (trans)->stream;
+  L1L2StabInfo info;
+  GstL1L2StabMap map;
+  GstFlowReturn ret;
+
+  ret = gst_l1l2_stab_stream_render (stream, output, &info);
+  if (ret == GST_FLOW_OK) {
+    gst_l1l2_stab_map_init (&map, &info, &stream->in_info, &stream->out_info);
+    gst_l1l2_stab_carry_regions (output, &map, &stream->out_info);
+  }
+  return ret;
 }
 
 /* The base class is left nothing to push. */
@@ -222,17 +233,11 @@ gst_l1l2_stab_decide_allocation (GstBaseTransform * trans, GstQuery * query)
       ->decide_allocation (trans, query);
 }
 
-/* What says nothing of size, place or memory stays true. So do, nearly, the two that tell of borders. */
 static gboolean
 gst_l1l2_stab_transform_meta (GstBaseTransform * trans, GstBuffer * output,
     GstMeta * meta, GstBuffer * input)
 {
-  const GType api = meta->info->api;
-  const gchar *const *tags = gst_meta_api_type_get_tags (api);
-
-  return !tags || (g_str_equal (tags[0], GST_META_TAG_VIDEO_STR) && !tags[1])
-      || api == GST_VIDEO_AFD_META_API_TYPE
-      || api == GST_VIDEO_BAR_META_API_TYPE;
+  return gst_l1l2_stab_carry_keeps (meta);
 }
 
 /* --- object --- */

@@ -210,7 +210,8 @@ gst_l1l2_stab_stream_peek (GstL1L2StabStream * stream, GstBuffer ** next)
 }
 
 GstFlowReturn
-gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output)
+gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output,
+    L1L2StabInfo * info)
 {
   L1L2StabFrame frame = { 0 };
   L1L2StabResult result;
@@ -222,7 +223,7 @@ gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output)
     return GST_FLOW_ERROR;
   }
   gst_l1l2_stab_glue_planes (&frame, &pixels);
-  result = l1l2stab_pull (stream->stab, &frame, NULL);
+  result = l1l2stab_pull (stream->stab, &frame, info);
   gst_video_frame_unmap (&pixels);
 
   if (result == L1L2STAB_OK)

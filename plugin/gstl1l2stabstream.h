@@ -52,9 +52,9 @@ GstFlowReturn gst_l1l2_stab_stream_push (GstL1L2StabStream * stream,
 GstFlowReturn gst_l1l2_stab_stream_peek (GstL1L2StabStream * stream,
     GstBuffer ** next);
 
-/* Renders the frame that peek() shows into `output`, and lets go of it. */
+/* Renders the frame that peek() shows into `output`, and lets go of it. *info: what was done to it. */
 GstFlowReturn gst_l1l2_stab_stream_render (GstL1L2StabStream * stream,
-    GstBuffer * output);
+    GstBuffer * output, L1L2StabInfo * info);
 
 /* From now on peek() shows all that is held. Only reset() allows to push again. */
 GstFlowReturn gst_l1l2_stab_stream_finish (GstL1L2StabStream * stream);

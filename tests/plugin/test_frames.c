@@ -117,46 +117,6 @@ GST_START_TEST (the_order_is_that_of_arrival_whatever_the_timestamps)
 
 GST_END_TEST;
 
-GST_START_TEST (metas_stay_with_their_frame)
-{
-  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
-  GstCaps *clock = gst_caps_new_empty_simple ("timestamp/x-test");
-  guint i;
-
-  for (i = 0; i < 2 * WINDOW; i++) {
-    GstBuffer *buffer = stab_frame_new (h, i);
-
-    gst_buffer_add_reference_timestamp_meta (buffer, clock, 1000 + i, 1);
-    gst_buffer_add_video_time_code_meta_full (buffer, 25, 1, NULL,
-        GST_VIDEO_TIME_CODE_FLAGS_NONE, 0, 0, 0, i, 0);
-    gst_buffer_add_video_afd_meta (buffer, 0, GST_VIDEO_AFD_SPEC_ATSC_A53,
-        i % 2 ? GST_VIDEO_AFD_4_3_FULL_16_9_FULL :
-        GST_VIDEO_AFD_16_9_LETTER_14_9_CENTER);
-    gst_buffer_add_video_bar_meta (buffer, 0, TRUE, i, 2 * i);
-    fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
-  }
-  gst_harness_push_event (h, gst_event_new_eos ());
-  for (i = 0; i < 2 * WINDOW; i++) {
-    GstBuffer *buffer = gst_harness_pull (h);
-    GstReferenceTimestampMeta *time =
-        gst_buffer_get_reference_timestamp_meta (buffer, clock);
-    GstVideoTimeCodeMeta *code = gst_buffer_get_video_time_code_meta (buffer);
-    GstVideoAFDMeta *afd = gst_buffer_get_video_afd_meta (buffer);
-    GstVideoBarMeta *bar = gst_buffer_get_video_bar_meta (buffer);
-
-    fail_unless (time && time->timestamp == 1000 + i);
-    fail_unless (code && code->tc.frames == i);
-    fail_unless (afd && (afd->afd == GST_VIDEO_AFD_4_3_FULL_16_9_FULL)
-        == (i % 2 == 1));
-    fail_unless (bar && bar->bar_data1 == i && bar->bar_data2 == 2 * i);
-    gst_buffer_unref (buffer);
-  }
-  gst_caps_unref (clock);
-  stab_harness_free (h);
-}
-
-GST_END_TEST;
-
 GST_START_TEST (the_input_is_only_read_and_given_back)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
@@ -222,7 +182,6 @@ frames_suite (void)
   tcase_add_test (tc, flags_and_offsets_stay_with_their_frame);
   tcase_add_test (tc, frames_without_timestamps_come_out_without);
   tcase_add_test (tc, the_order_is_that_of_arrival_whatever_the_timestamps);
-  tcase_add_test (tc, metas_stay_with_their_frame);
   tcase_add_test (tc, the_input_is_only_read_and_given_back);
   tcase_add_test (tc, a_buffer_too_small_for_its_caps_is_an_error);
   return s;

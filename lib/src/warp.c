@@ -9,6 +9,7 @@
 #include "pool.h"
 #include "warp_coords.h"
 #include "warp_kernel.h"
+#include "warp_u16.h"
 #include "warp_u8.h"
 
 enum {
@@ -70,6 +71,8 @@ void l1l2_warp_free(L1L2Warp *w)
 /* The sample type's function for one plane. */
 static L1L2WarpRun *find_run(const L1L2WarpConfig *cfg, int taps, int components)
 {
+    if (cfg->format->depth > 8)
+        return (cfg->plain ? l1l2_warp_u16_run_plain : l1l2_warp_u16_run)(taps, components, cfg->format->depth);
     return (cfg->plain ? l1l2_warp_u8_run_plain : l1l2_warp_u8_run)(taps, components);
 }
 

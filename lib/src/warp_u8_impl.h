@@ -8,12 +8,6 @@
 
 #include "warp_u8.h"
 
-#if defined(__GNUC__)
-#define SPECIALIZED static inline __attribute__((always_inline))
-#else
-#define SPECIALIZED static inline
-#endif
-
 #define DEFINE_RUN(taps, components)                                                                                  \
     static void run_##taps##_##components(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x,   \
                                           const int32_t *y, int count, uint8_t *dst)                                  \

@@ -5,9 +5,11 @@
 #include <string.h>
 
 #include "clock.h"
+#include "dissolve.h"
 #include "log.h"
 #include "mem.h"
-#include "ransac.h"
+#include "motion_ladder.h"
+#include "motion_overlay.h"
 #include "vision.h"
 
 /* On ten real clips 150 points are as good, 250 no better; on synthetic ones the median error is 0.016 px at 720p. */
@@ -21,30 +23,24 @@ static const double max_return_px = 0.5;
 /* Parallax makes 1 px flicker between surfaces; at 2 px, slow things that move by themselves are let in. */
 static const double inlier_px = 1.5;
 
-/* What a camera does from one frame to the next; beyond it, the fit is wrong. */
-static const double min_scale = 0.8, max_scale = 1.25, max_rotation_rad = 0.25;
-static const int min_inliers = 30, min_inliers_translation = 8;
-static const double min_inlier_share = 0.2;
-
-/* Where nothing can be measured, the last motion goes on and fades; after this many frames it is gone. */
-static const int max_predicted = 15;
-static const double prediction_fade = 0.8;
-
 struct L1L2Motion {
     L1L2MotionConfig cfg;
     L1L2Vision *vision;
     int width, height;      /* of the tracked picture */
     double diagonal_px;     /* of the frame */
-    double threshold;       /* inlier_px in diagonals */
     double distance_px;     /* between points */
     L1L2Rng rng;
     L1L2Pixel point[MAX_POINTS], moved[MAX_POINTS];
+    int age[MAX_POINTS];    /* frames that a point has moved with the camera */
     L1L2Pair pair[MAX_POINTS];
+    double votes[MAX_POINTS];
     bool ok[MAX_POINTS], inlier[MAX_POINTS];
     int points;             /* in `point`, in the current picture */
     int since_selection;    /* frames */
-    L1L2Mat last;           /* the last measured motion, fading while it is predicted from */
-    int lost;               /* frames since the last measured one */
+    L1L2Votes voters;
+    L1L2Ladder ladder;
+    L1L2Overlay overlay;
+    L1L2Dissolve dissolve;
     L1L2Thumbnail thumbnail;  /* of the current picture */
     L1L2Thumbnail last_shown; /* of the last picture whose motion was measured, or with which a path started */
 };
@@ -70,7 +66,11 @@ L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
     }
     l1l2_vision_size(m->vision, &m->width, &m->height);
     m->diagonal_px = hypot(cfg->width, cfg->height);
-    m->threshold = inlier_px / hypot(m->width, m->height);
+    const double half_w = 0.5 * cfg->width / m->diagonal_px, half_h = 0.5 * cfg->height / m->diagonal_px;
+    const double pixel = 1.0 / hypot(m->width, m->height);
+    m->voters = (L1L2Votes){.half_w = half_w, .half_h = half_h};
+    m->overlay = (L1L2Overlay){.half_w = half_w, .half_h = half_h, .pixel = pixel};
+    m->ladder = (L1L2Ladder){.wanted = cfg->model, .threshold = inlier_px * pixel};
     /* 0.4 of the distance of as many points on a square grid. */
     m->distance_px = fmax(0.4 * sqrt((double)m->width * m->height / MAX_POINTS), min_distance_px);
     m->distance_px = fmin(m->distance_px, max_distance_px);
@@ -91,15 +91,17 @@ static void start_path(L1L2Motion *m)
 {
     m->points = 0;
     m->since_selection = RESELECT_FRAMES;
-    m->last = l1l2_mat_identity();
-    m->lost = 0;
     m->last_shown = m->thumbnail;
+    l1l2_votes_reset(&m->voters);
+    l1l2_ladder_reset(&m->ladder);
+    l1l2_dissolve_start(&m->dissolve, &m->thumbnail);
 }
 
 void l1l2_motion_reset(L1L2Motion *m)
 {
     l1l2_vision_reset(m->vision);
     m->rng = l1l2_rng_seeded(m->cfg.seed);
+    l1l2_overlay_reset(&m->overlay);
     start_path(m);
 }
 
@@ -111,96 +113,105 @@ static L1L2Point to_diagonals(const L1L2Motion *m, L1L2Pixel p)
                        ((p.y + 0.5) * m->cfg.height / m->height - 0.5 * m->cfg.height) / m->diagonal_px};
 }
 
-/* Step 1: the points of the previous picture, new ones where due, followed into the current one. */
+/* New points where due: not where something stands still. */
+static L1L2StabResult select_points(L1L2Motion *m)
+{
+    if (m->since_selection++ < RESELECT_FRAMES && m->points >= FEW_POINTS)
+        return L1L2STAB_OK;
+    L1L2Mask mask;
+    int found;
+    l1l2_overlay_mask(&m->overlay, &mask);
+    const L1L2StabResult result =
+        l1l2_vision_corners(m->vision, m->point, m->points, &mask, m->distance_px, m->point + m->points,
+                            MAX_POINTS - m->points, &found);
+    memset(m->age + m->points, 0, (size_t)found * sizeof *m->age);
+    m->points += found;
+    m->since_selection = 1;
+    return result;
+}
+
+static void keep(L1L2Motion *m, int i, int *kept)
+{
+    m->point[*kept] = m->point[i];
+    m->age[*kept] = m->age[i];
+    m->pair[*kept] = m->pair[i];
+    ++*kept;
+}
+
+/* Step 1: the points of the previous picture, followed into the current one. */
 static L1L2StabResult track(L1L2Motion *m)
 {
-    L1L2StabResult result = L1L2STAB_OK;
-    if (m->since_selection >= RESELECT_FRAMES || m->points < FEW_POINTS) {
-        int found;
-        result = l1l2_vision_corners(m->vision, m->point, m->points, m->distance_px, m->point + m->points,
-                                     MAX_POINTS - m->points, &found);
-        m->points += found;
-        m->since_selection = 0;
-    }
-    m->since_selection++;
+    L1L2StabResult result = select_points(m);
     if (result == L1L2STAB_OK)
         result = l1l2_vision_track(m->vision, m->point, m->moved, m->ok, m->points, max_return_px);
     if (result != L1L2STAB_OK)
         return result;
     int kept = 0;
-    for (int i = 0; i < m->points; i++)
-        if (m->ok[i]) {
-            m->pair[kept] = (L1L2Pair){to_diagonals(m, m->moved[i]), to_diagonals(m, m->point[i])};
-            m->point[kept++] = m->moved[i];
-        }
+    for (int i = 0; i < m->points; i++) {
+        m->pair[i] = (L1L2Pair){to_diagonals(m, m->moved[i]), to_diagonals(m, m->point[i])};
+        m->point[i] = m->moved[i];
+        if (m->ok[i] && !l1l2_overlay_covers(&m->overlay, m->pair[i].from))
+            keep(m, i, &kept);
+    }
     m->points = kept;
     return L1L2STAB_OK;
 }
 
-/* Outliers go: on something that moves by itself, or drifting. If they stayed, an object that covers a third of the
- * frame would now and then be taken for the background (measured: errors of 7 px). */
-static void keep_inliers(L1L2Motion *m)
+/* What is learned from a measured motion. Outliers go: on something that moves by itself, or drifting. If they stayed,
+ * an object that covers a third of the frame would now and then be taken for the background. */
+static void learn(L1L2Motion *m, const L1L2Mat *F)
 {
+    l1l2_votes_learn(&m->voters, m->pair, m->inlier, m->points);
+    l1l2_overlay_learn(&m->overlay, m->pair, m->inlier, m->points, F);
     int kept = 0;
-    for (int i = 0; i < m->points; i++)
+    for (int i = 0; i < m->points; i++) {
+        m->age[i]++;
         if (m->inlier[i])
-            m->point[kept++] = m->point[i];
+            keep(m, i, &kept);
+    }
     m->points = kept;
+    m->last_shown = m->thumbnail;
 }
 
-static bool plausible(const L1L2Mat *F)
+static void start_shot(L1L2Motion *m, L1L2MotionResult *out, const char *how)
 {
-    const double scale = hypot(F->m[0], F->m[3]), rotation = fabs(atan2(F->m[3], F->m[0]));
-    return scale >= min_scale && scale <= max_scale && rotation <= max_rotation_rad;
+    l1l2_log(m->cfg.log, L1L2STAB_LOG_DEBUG, "motion: %s", how);
+    *out = (L1L2MotionResult){.F = l1l2_mat_identity(), .scale_ns = out->scale_ns, .track_ns = out->track_ns};
+    start_path(m);
 }
 
-/* Nothing could be measured: is it because another shot begins? A picture that shows nothing is none; what comes after
- * it is compared with the one before. */
-static bool is_cut(const L1L2Motion *m)
-{
-    return l1l2_thumbnails_differ(&m->last_shown, &m->thumbnail);
-}
-
-/* Step 2: the ladder similarity, translation, predicted, identity; or a cut, which has no motion. */
 static void fit(L1L2Motion *m, L1L2MotionResult *out)
 {
     const int count = m->points;
-    out->tracks = count;
-    out->inliers = l1l2_ransac_similarity(m->pair, count, m->threshold, &m->rng, m->inlier, &out->F);
-    if (out->inliers >= min_inliers && out->inliers >= min_inlier_share * count && plausible(&out->F)) {
-        out->model = L1L2STAB_MODEL_SIMILARITY;
+    l1l2_votes_cast(&m->voters, m->pair, m->age, count, m->votes);
+    L1L2Rung rung = l1l2_ladder_measure(&m->ladder, &m->voters, m->pair, m->votes, count,
+                                        m->since_selection == 1, &m->rng, m->inlier);
+    const bool measured = rung.model != L1L2STAB_MODEL_NONE;
+    /* Nothing could be measured: is it because another shot begins? A picture that shows nothing is none; what comes
+     * after it is compared with the one before. */
+    if (!measured && l1l2_thumbnails_differ(&m->last_shown, &m->thumbnail)) {
+        start_shot(m, out, "a cut");
+        return;
+    }
+    if (measured) {
+        learn(m, &rung.F);
     } else {
-        /* Few points tell where the picture went, but not how it turned. */
-        out->inliers = l1l2_ransac_translation(m->pair, count, 2.0 * m->threshold, &m->rng, m->inlier, &out->F);
-        if (out->inliers >= min_inliers_translation && 2 * out->inliers >= count)
-            out->model = L1L2STAB_MODEL_TRANSLATION;
+        if (m->ladder.lost == 0)
+            l1l2_log(m->cfg.log, L1L2STAB_LOG_WARN, "motion: lost, %d of %d points agree: predicting", rung.inliers,
+                     count);
+        m->points = 0;
+        m->since_selection = RESELECT_FRAMES;
+        rung = l1l2_ladder_predict(&m->ladder);
     }
-    if (out->model != L1L2STAB_MODEL_NONE) {
-        if (m->lost > 0)
-            l1l2_log(m->cfg.log, L1L2STAB_LOG_DEBUG, "motion: measured again after %d frames", m->lost);
-        keep_inliers(m);
-        m->last = out->F;
-        m->lost = 0;
-        m->last_shown = m->thumbnail;
+    if (l1l2_dissolve_push(&m->dissolve, &m->thumbnail, &rung.F, m->voters.half_w, m->voters.half_h)) {
+        start_shot(m, out, "a dissolve");
         return;
     }
-    if (is_cut(m)) {
-        l1l2_log(m->cfg.log, L1L2STAB_LOG_DEBUG, "motion: a cut");
-        *out = (L1L2MotionResult){.F = l1l2_mat_identity(), .scale_ns = out->scale_ns, .track_ns = out->track_ns};
-        start_path(m);
-        return;
-    }
-    if (m->lost++ == 0)
-        l1l2_log(m->cfg.log, L1L2STAB_LOG_WARN, "motion: lost, %d of %d points agree: predicting", out->inliers, count);
-    m->points = 0;
-    m->since_selection = RESELECT_FRAMES;
-    for (int i = 0; i < 9; i++) {
-        const double identity = i % 4 == 0 ? 1.0 : 0.0;
-        m->last.m[i] = identity + prediction_fade * (m->last.m[i] - identity);
-    }
-    out->inliers = 0;
-    out->model = m->lost <= max_predicted ? L1L2STAB_MODEL_PREDICTED : L1L2STAB_MODEL_IDENTITY;
-    out->F = m->lost <= max_predicted ? m->last : l1l2_mat_identity();
+    out->F = rung.F;
+    out->model = rung.model;
+    out->tracks = count;
+    out->inliers = rung.inliers;
+    out->quality = rung.quality;
 }
 
 L1L2StabResult l1l2_motion_push(L1L2Motion *m, const uint8_t *data, ptrdiff_t stride, bool starts_path,

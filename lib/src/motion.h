@@ -3,8 +3,8 @@
  * Algorithm 1, steps 1 and 2: from one frame to the next, the camera's motion F_t.
  *
  * Features are Shi-Tomasi corners with a minimum distance, re-selected every 10 frames or when too few are left,
- * followed by pyramidal Lucas-Kanade with a backward check; RANSAC fits a similarity, least squares refines it.
- * What fails the limits of motion.c falls back in steps: similarity, translation, predicted, identity.
+ * followed by pyramidal Lucas-Kanade with a backward check. motion_overlay.c knows what never moves, motion_votes.c
+ * whose word counts how much, ransac.c fits, and motion_ladder.c says what can be believed.
  */
 #ifndef L1L2_MOTION_H
 #define L1L2_MOTION_H
@@ -21,6 +21,7 @@ typedef struct L1L2MotionConfig {
     const L1L2FormatInfo *format;
     int width, height;  /* of the frames, pixels */
     int analysis_size;  /* longer side of the tracked picture, pixels */
+    L1L2StabMotionModel model; /* the highest that is fitted */
     uint64_t seed;
     const L1L2StabLogger *log;
 } L1L2MotionConfig;
@@ -30,6 +31,7 @@ typedef struct L1L2MotionResult {
     /* NONE: a path starts, because the caller said so or because a cut was seen. */
     L1L2StabModel model;
     int tracks, inliers;
+    double quality;     /* [0, 1], as in L1L2StabInfo */
     int64_t scale_ns, track_ns, fit_ns;
 } L1L2MotionResult;
 

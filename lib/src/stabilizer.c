@@ -45,6 +45,7 @@ static L1L2StabResult build(L1L2Stab *s)
         .width = cfg->width,
         .height = cfg->height,
         .analysis_size = cfg->analysis_size,
+        .model = cfg->motion_model,
         .seed = cfg->seed,
         .log = &cfg->logger,
     };
@@ -169,6 +170,7 @@ static L1L2MotionResult given_motion(L1L2Stab *s, bool starts_path)
     return (L1L2MotionResult){
         .F = l1l2_mat_identity(),
         .model = starts_path ? L1L2STAB_MODEL_NONE : L1L2STAB_MODEL_GIVEN,
+        .quality = starts_path ? 0.0 : 1.0,
     };
 }
 
@@ -312,6 +314,7 @@ static void describe(const L1L2Stab *s, const L1L2Held *held, const L1L2Mat *map
         .crop_ratio = f->crop_ratio,
         .tracks = held->motion.tracks,
         .inliers = held->motion.inliers,
+        .quality = held->motion.quality,
         .solver_iterations = f->report.predictor_iterations + f->report.osqp_iterations,
         .solver = f->report.decided_by,
         .solver_bound = f->report.bound,

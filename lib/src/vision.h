@@ -33,6 +33,14 @@ typedef struct L1L2Pixel {
     float x, y;
 } L1L2Pixel;
 
+/* Cells of the picture, row by row, in which no corner is looked for. */
+#define L1L2_MASK_W 32
+#define L1L2_MASK_H 18
+#define L1L2_MASK_CELLS (L1L2_MASK_W * L1L2_MASK_H)
+typedef struct L1L2Mask {
+    bool blocked[L1L2_MASK_CELLS];
+} L1L2Mask;
+
 /* On error *out is NULL. cfg->log must outlive the object. */
 L1L2StabResult l1l2_vision_create(L1L2Vision **out, const L1L2VisionConfig *cfg);
 void l1l2_vision_free(L1L2Vision *v);
@@ -51,9 +59,10 @@ L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t
 L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail);
 
 /* Up to `capacity` new corners of the PREVIOUS picture, strongest first, at least min_distance pixels from each other
- * and from the `count` points of `taken`. *found says how many. */
-L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int count, double min_distance,
-                                   L1L2Pixel *corners, int capacity, int *found);
+ * and from the `count` points of `taken`, none in the mask (NULL: anywhere) nor where black bars begin. *found says how
+ * many. */
+L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int count, const L1L2Mask *mask,
+                                   double min_distance, L1L2Pixel *corners, int capacity, int *found);
 
 /* Follow `count` points of the previous picture into the current one and back.
  * ok[i]: found both ways, within the picture, and back within max_return pixels of where it started. */

@@ -41,6 +41,8 @@ constexpr double kCornerQuality = 0.003;
 /* Cells in which no corner was chosen get a turn of their own, by their own strongest: else a burnt-in clock would
  * leave a dark scene none. */
 constexpr int kCellsX = 4, kCellsY = 3;
+/* Letterbox bars: no brighter than this, and flat but for what compression leaves. Grey levels. */
+constexpr int kBlack = 40, kFlat = 10;
 /* A long strip keeps this many pixels of its short side, as far as it has them: a window has to find its place. */
 constexpr int kMinSide = 32;
 
@@ -55,6 +57,7 @@ struct L1L2Vision {
     cv::Mat grey, previous_grey;
     std::vector<cv::Mat> pyramid, previous_pyramid;
     int pictures = 0;                        /* taken since reset, at most 2 matter */
+    cv::Rect active;                         /* the picture without its bars, of the downscaled size */
     cv::Mat mask;
     std::vector<cv::Point2f> from, to, back;
     std::vector<uchar> found, found_back;
@@ -108,7 +111,60 @@ void scale_to_grey(L1L2Vision *v, const cv::Mat &frame)
 
 bool inside(const L1L2Vision *v, cv::Point2f p)
 {
-    return p.x >= 0 && p.y >= 0 && p.x <= v->size.width - 1 && p.y <= v->size.height - 1;
+    return p.x >= v->active.x && p.y >= v->active.y && p.x <= v->active.x + v->active.width - 1 &&
+           p.y <= v->active.y + v->active.height - 1;
+}
+
+/* How many lines of `low` and `high`, from one end on, differ by next to nothing: a bar. Not more than 45 %. */
+int bar_lines(const cv::Mat &low, const cv::Mat &high, bool from_end)
+{
+    const int lines = int(low.total()), most = lines * 45 / 100;
+    int bar = 0;
+    while (bar < most) {
+        const int i = from_end ? lines - 1 - bar : bar;
+        if (high.data[i] > kBlack || high.data[i] - low.data[i] > kFlat)
+            break;
+        bar++;
+    }
+    return bar;
+}
+
+/* The picture within letterbox or pillarbox bars. A corner where the scene goes behind a bar moves with neither, so a
+ * window's radius is left out there; where there is no bar, nothing is. */
+cv::Rect active_area(const cv::Mat &picture)
+{
+    int bar[4]; /* top, bottom, left, right */
+    for (int side = 0; side < 2; side++) {
+        cv::Mat low, high;
+        cv::reduce(picture, low, side == 0 ? 1 : 0, cv::REDUCE_MIN);
+        cv::reduce(picture, high, side == 0 ? 1 : 0, cv::REDUCE_MAX);
+        for (int end = 0; end < 2; end++) {
+            bar[2 * side + end] = bar_lines(low, high, end == 1);
+            if (bar[2 * side + end] > 0)
+                bar[2 * side + end] += kWindow / 2 + 1;
+        }
+    }
+    const cv::Rect inner(bar[2], bar[0], picture.cols - bar[2] - bar[3], picture.rows - bar[0] - bar[1]);
+    return inner.width > 0 && inner.height > 0 ? inner : cv::Rect(cv::Point(), picture.size());
+}
+
+void block(cv::Mat &area, const L1L2Mask *mask)
+{
+    for (int cell = 0; mask && cell < L1L2_MASK_CELLS; cell++) {
+        const int x = cell % L1L2_MASK_W, y = cell / L1L2_MASK_W;
+        const int left = area.cols * x / L1L2_MASK_W, right = area.cols * (x + 1) / L1L2_MASK_W;
+        const int top = area.rows * y / L1L2_MASK_H, bottom = area.rows * (y + 1) / L1L2_MASK_H;
+        if (mask->blocked[cell])
+            area(cv::Rect(left, top, right - left, bottom - top)).setTo(0);
+    }
+}
+
+/* An area of a picture that is `factor` times smaller; what reaches that picture's far edge reaches this one's. */
+cv::Rect scaled(cv::Rect area, int factor, cv::Size small, cv::Size size)
+{
+    const int right = area.br().x == small.width ? size.width : area.br().x * factor;
+    const int bottom = area.br().y == small.height ? size.height : area.br().y * factor;
+    return {area.x * factor, area.y * factor, right - area.x * factor, bottom - area.y * factor};
 }
 
 /* Follows v->from into v->to, and v->to back into v->back. */
@@ -162,6 +218,7 @@ L1L2StabResult l1l2_vision_create(L1L2Vision **out, const L1L2VisionConfig *cfg)
         *out = new L1L2Vision;
         (*out)->cfg = *cfg;
         (*out)->size = cv::Size(scaled_side(*cfg, cfg->width), scaled_side(*cfg, cfg->height));
+        (*out)->active = cv::Rect(cv::Point(), (*out)->size);
     });
 }
 
@@ -173,6 +230,7 @@ void l1l2_vision_free(L1L2Vision *v)
 void l1l2_vision_reset(L1L2Vision *v)
 {
     v->pictures = 0;
+    v->active = cv::Rect(cv::Point(), v->size);
 }
 
 void l1l2_vision_size(const L1L2Vision *v, int *width, int *height)
@@ -209,8 +267,8 @@ L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail)
     });
 }
 
-L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int count, double min_distance,
-                                   L1L2Pixel *corners, int capacity, int *found)
+L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int count, const L1L2Mask *mask,
+                                   double min_distance, L1L2Pixel *corners, int capacity, int *found)
 {
     *found = 0;
     if (v->pictures < 2 || capacity <= 0) /* OpenCV takes a capacity of 0 for none at all */
@@ -222,8 +280,12 @@ L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int co
         const cv::Mat &picture = half ? v->previous_pyramid[2] : v->previous_grey;
         const float scale = half ? 2.0f : 1.0f;
         const double distance = min_distance / double(scale);
+        const cv::Rect active = active_area(picture);
+        v->active = scaled(active, half ? 2 : 1, picture.size(), v->size);
         v->mask.create(picture.size(), CV_8U);
-        v->mask.setTo(255);
+        v->mask.setTo(0);
+        v->mask(active).setTo(255);
+        block(v->mask, mask);
         for (int i = 0; i < count; i++) /* one pixel more, since centre and rim are rounded */
             cv::circle(v->mask, cv::Point(cvRound(taken[i].x / scale), cvRound(taken[i].y / scale)),
                        cvCeil(distance) + 1, cv::Scalar(0), cv::FILLED);

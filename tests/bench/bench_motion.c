@@ -63,7 +63,7 @@ static void bench(const Case *c, int width, int height)
     uint8_t *picture = malloc((size_t)width * (size_t)height);
     const L1L2MotionConfig motion = {
         .format = l1l2_format_info(L1L2STAB_FORMAT_GRAY8), .width = width, .height = height,
-        .analysis_size = 640, .seed = 1};
+        .analysis_size = 640, .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .seed = 1};
     L1L2Motion *m;
     if (!picture || l1l2_motion_create(&m, &motion) != L1L2STAB_OK)
         exit(EXIT_FAILURE);

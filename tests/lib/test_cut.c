@@ -24,7 +24,7 @@ static void find_starts(const Shows shows[FRAMES], bool starts[FRAMES], L1L2Stab
     static uint8_t picture[WIDTH * HEIGHT];
     const L1L2MotionConfig motion = {
         .format = l1l2_format_info(L1L2STAB_FORMAT_GRAY8), .width = WIDTH, .height = HEIGHT,
-        .analysis_size = 640, .seed = 1};
+        .analysis_size = 640, .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .seed = 1};
     L1L2Motion *m;
     ck_assert_int_eq(l1l2_motion_create(&m, &motion), L1L2STAB_OK);
     for (int t = 0; t < FRAMES; t++) {

@@ -56,7 +56,7 @@ static void advance_synth(const Synth *s, int t, SynthPicture *p)
 static int corners(const L1L2Pixel *taken, int count, L1L2Pixel *out, int capacity)
 {
     int found = -1;
-    ck_assert_int_eq(l1l2_vision_corners(vision, taken, count, 12.0, out, capacity, &found), L1L2STAB_OK);
+    ck_assert_int_eq(l1l2_vision_corners(vision, taken, count, NULL, 12.0, out, capacity, &found), L1L2STAB_OK);
     ck_assert_int_ge(found, 0);
     ck_assert_int_le(found, capacity);
     return found;

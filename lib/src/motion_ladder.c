@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: MIT */
+#include "motion_ladder.h"
+
+#include <math.h>
+
+#include "ransac_fit.h"
+
+/* What a camera does from one frame to the next; beyond it, the fit is wrong. */
+static const double min_scale = 0.8, max_scale = 1.25, max_rotation_rad = 0.25;
+static const int min_inliers = 30, min_inliers_translation = 8;
+static const double min_inlier_share = 0.2;
+/* Few points tell where the picture went, but not how it turned: a wider threshold, and more of them have to agree. */
+static const double wider = 2.0, min_share_fallback = 0.5;
+/* Points of nothing but noise agree with a shift if it is wide enough; then they fill the circle around it evenly. */
+static const double max_spread = 0.5; /* rms of the inliers' residuals, of the threshold; evenly filled it is 0.71 */
+/* Up again. */
+static const double plenty = 1.5;
+static const int good_frames = 3;
+
+/* Where nothing can be measured, the last motion goes on and fades; after this many frames it is gone. */
+static const int max_predicted = 15;
+static const double prediction_fade = 0.8;
+
+/* Another motion is looked for among outliers that have this part of the votes. */
+static const double min_rival_share = 0.1;
+static const int min_rival_inliers = 8;
+/* Half a threshold beyond the inliers it is another depth of the same scene, and no harm to follow; from here on, px of
+ * thresholds at the corners, it is another thing. */
+static const double far_apart = 6.0;
+/* Below it, a motion is as likely the subject's as the background's. */
+static const double min_quality = 0.12;
+/* Inliers in this part of the cells are as good as all over the frame. */
+static const double full_coverage = 0.3;
+
+void l1l2_ladder_reset(L1L2Ladder *l)
+{
+    l->rung = l->wanted;
+    l->waiting = l->lost = 0;
+    l->last = l1l2_mat_identity();
+    l->agreed = 1.0;
+}
+
+/* The singular values of the linear part lie within the scales, and it turns little. */
+static bool plausible(const L1L2Mat *F)
+{
+    const double a = F->m[0], b = F->m[1], c = F->m[3], d = F->m[4];
+    const double turn = hypot(a + d, c - b) / 2.0, shear = hypot(a - d, b + c) / 2.0;
+    return turn - shear >= min_scale && turn + shear <= max_scale && fabs(atan2(c - b, a + d)) <= max_rotation_rad;
+}
+
+static double spread(const L1L2Mat *F, const L1L2Pair *pairs, const bool *inlier, int count)
+{
+    double sum = 0.0;
+    int inliers = 0;
+    for (int i = 0; i < count; i++)
+        if (inlier[i]) {
+            const L1L2Point p = l1l2_mat_apply(F, pairs[i].from);
+            sum += (p.x - pairs[i].to.x) * (p.x - pairs[i].to.x) + (p.y - pairs[i].to.y) * (p.y - pairs[i].to.y);
+            inliers++;
+        }
+    return sqrt(sum / inliers);
+}
+
+/* Does the rung bear? */
+static bool stands(const L1L2Ladder *l, L1L2StabMotionModel rung, const L1L2Votes *v, const L1L2Pair *pairs, int count,
+                   const bool *inlier, const L1L2Rung *r)
+{
+    if (rung == L1L2STAB_MOTION_MODEL_TRANSLATION) {
+        const double share = l->wanted == rung ? min_inlier_share : min_share_fallback;
+        return r->inliers >= min_inliers_translation && r->inliers >= share * count &&
+               spread(&r->F, pairs, inlier, count) <= max_spread * wider * l->threshold;
+    }
+    return r->inliers >= min_inliers && r->inliers >= min_inlier_share * count && plausible(&r->F) &&
+           (rung == L1L2STAB_MOTION_MODEL_SIMILARITY ||
+            l1l2_votes_coverage(v, pairs, inlier, count) >= full_coverage);
+}
+
+/* A rung above the last one waits until it has borne for some frames. */
+static bool may_rise(L1L2Ladder *l, L1L2StabMotionModel rung, int inliers)
+{
+    if (rung <= l->rung || inliers >= plenty * min_inliers || ++l->waiting >= good_frames) {
+        l->waiting = 0;
+        return true;
+    }
+    return false;
+}
+
+static double votes_of(const double *votes, const bool *inlier, int count)
+{
+    double sum = 0.0;
+    for (int i = 0; i < count; i++)
+        sum += !inlier || inlier[i] ? votes[i] : 0.0;
+    return sum;
+}
+
+/* The votes of the best motion among those that do not agree, as far as it is another than F. */
+static double rival_votes(const L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat *F, const L1L2Pair *pairs,
+                          const double *votes, const bool *inlier, int count, L1L2Rng *rng)
+{
+    L1L2Pair other[L1L2_RANSAC_MAX_PAIRS] = {0};
+    double other_votes[L1L2_RANSAC_MAX_PAIRS] = {0};
+    bool agreeing[L1L2_RANSAC_MAX_PAIRS];
+    L1L2Mat rival;
+    int others = 0;
+    for (int i = 0; i < count; i++)
+        if (!inlier[i])
+            other[others] = pairs[i], other_votes[others++] = votes[i];
+    const int inliers = l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, other, other_votes, others, l->threshold, rng,
+                                    agreeing, &rival);
+    if (inliers < min_rival_inliers || spread(&rival, other, agreeing, others) > max_spread * l->threshold)
+        return 0.0;
+    const double apart = l1l2_mat_corner_distance(F, &rival, v->half_w, v->half_h) / l->threshold;
+    return votes_of(other_votes, agreeing, others) * fmin(1.0, apart / far_apart);
+}
+
+static double quality(L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat *F, const L1L2Pair *pairs, const double *votes,
+                      int count, bool selected, L1L2Rng *rng, const bool *inlier)
+{
+    const double all = votes_of(votes, NULL, count), mine = votes_of(votes, inlier, count);
+    double rival = 0.0;
+    if (all - mine >= min_rival_share * all)
+        rival = rival_votes(l, v, F, pairs, votes, inlier, count, rng);
+    const double covered = l1l2_votes_coverage(v, pairs, inlier, count);
+    const double agreed = mine / all * fmax(0.0, 1.0 - rival / mine) * fmin(1.0, covered / full_coverage);
+    l->agreed = selected ? agreed : fmin(agreed, l->agreed);
+    return l->agreed;
+}
+
+static const L1L2StabModel model_of[] = {L1L2STAB_MODEL_TRANSLATION, L1L2STAB_MODEL_SIMILARITY, L1L2STAB_MODEL_AFFINE};
+
+L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *pairs, const double *votes, int count,
+                             bool selected, L1L2Rng *rng, bool *inlier)
+{
+    L1L2Rung r = {.model = L1L2STAB_MODEL_NONE, .F = l1l2_mat_identity()};
+    for (int rung = (int)l->wanted; rung >= L1L2STAB_MOTION_MODEL_TRANSLATION; rung--) {
+        const L1L2StabMotionModel model = (L1L2StabMotionModel)rung;
+        const double threshold = (rung == L1L2STAB_MOTION_MODEL_TRANSLATION ? wider : 1.0) * l->threshold;
+        r.inliers = l1l2_ransac(model, pairs, votes, count, threshold, rng, inlier, &r.F);
+        if (!stands(l, model, v, pairs, count, inlier, &r) || !may_rise(l, model, r.inliers))
+            continue;
+        r.quality = quality(l, v, &r.F, pairs, votes, count, selected, rng, inlier);
+        if (r.quality < min_quality)
+            break;
+        r.model = model_of[rung];
+        l->rung = model;
+        l->last = r.F;
+        l->lost = 0;
+        break;
+    }
+    return r;
+}
+
+L1L2Rung l1l2_ladder_predict(L1L2Ladder *l)
+{
+    l->lost++;
+    l->rung = l->wanted;
+    l->waiting = 0;
+    for (int i = 0; i < 9; i++) {
+        const double identity = i % 4 == 0 ? 1.0 : 0.0;
+        l->last.m[i] = identity + prediction_fade * (l->last.m[i] - identity);
+    }
+    const bool fading = l->lost <= max_predicted;
+    return (L1L2Rung){.model = fading ? L1L2STAB_MODEL_PREDICTED : L1L2STAB_MODEL_IDENTITY,
+                      .F = fading ? l->last : l1l2_mat_identity()};
+}

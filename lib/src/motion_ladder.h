@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Step 2: the model of the motion into a frame, from the highest rung that the tracks can bear
+ *
+ *   affine (where it is asked for) -> similarity -> translation -> predicted -> identity
+ *
+ * A rung has gates: what a camera does from one frame to the next, and enough tracks that agree. Down is at once; up
+ * again takes plenty of tracks or three good frames in a row, so that the model does not flip from frame to frame.
+ *
+ * Quality, [0, 1]: the part of the votes that agree; less where another motion has many votes too, and where they cover
+ * little of the frame. Where two motions have about as many votes, neither is followed.
+ */
+#ifndef L1L2_MOTION_LADDER_H
+#define L1L2_MOTION_LADDER_H
+
+#include "motion_votes.h"
+
+typedef struct L1L2Ladder {
+    L1L2StabMotionModel wanted; /* the highest rung */
+    double threshold;           /* of the inliers, in the pairs' unit */
+    L1L2StabMotionModel rung;   /* that was borne last */
+    int waiting;                /* frames in a row that a higher one was */
+    L1L2Mat last;               /* the last measured motion, fading while it is predicted from */
+    int lost;                   /* frames since then */
+    double agreed;              /* quality when points were chosen last: after that, only those that agree are left */
+} L1L2Ladder;
+
+typedef struct L1L2Rung {
+    L1L2StabModel model; /* NONE: nothing was measured */
+    L1L2Mat F;
+    int inliers;
+    double quality;      /* [0, 1] */
+} L1L2Rung;
+
+/* A path starts: the motion before it means nothing. */
+void l1l2_ladder_reset(L1L2Ladder *l);
+
+/* selected: points were chosen anew for this frame. inlier: `count` flags out. */
+L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *pairs, const double *votes, int count,
+                             bool selected, L1L2Rng *rng, bool *inlier);
+
+/* The motion where nothing was measured: the one before it, fading, and then none. */
+L1L2Rung l1l2_ladder_predict(L1L2Ladder *l);
+
+#endif

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+#include "motion_votes.h"
+
+#include <math.h>
+
+enum { CELLS_X = L1L2_VOTE_CELLS_X, CELLS_Y = L1L2_VOTE_CELLS_Y, CELLS = L1L2_VOTE_CELLS };
+
+static const double outer_factor = 2.0;
+/* A track of ten frames has three times a new one's vote. */
+static const int grown_up = 10;
+static const double age_factor = 3.0;
+/* A cell's vote where nothing moved with the camera lately; more than 0, so that it can come to do so. */
+static const double least_trust = 0.2, learning_rate = 0.15;
+
+static int clamp(int v, int high)
+{
+    return v < 0 ? 0 : v > high ? high : v;
+}
+
+static int cell_of(const L1L2Votes *v, L1L2Point p)
+{
+    const int x = (int)floor((p.x / v->half_w + 1.0) * 0.5 * CELLS_X);
+    const int y = (int)floor((p.y / v->half_h + 1.0) * 0.5 * CELLS_Y);
+    return clamp(y, CELLS_Y - 1) * CELLS_X + clamp(x, CELLS_X - 1);
+}
+
+static bool is_outer(int cell)
+{
+    const int x = cell % CELLS_X, y = cell / CELLS_X;
+    return x == 0 || y == 0 || x == CELLS_X - 1 || y == CELLS_Y - 1;
+}
+
+void l1l2_votes_reset(L1L2Votes *v)
+{
+    for (int cell = 0; cell < CELLS; cell++)
+        v->trust[cell] = 1.0;
+}
+
+void l1l2_votes_cast(const L1L2Votes *v, const L1L2Pair *pairs, const int *age, int count, double *votes)
+{
+    int population[CELLS] = {0};
+    for (int i = 0; i < count; i++)
+        population[cell_of(v, pairs[i].from)]++;
+    for (int i = 0; i < count; i++) {
+        const int cell = cell_of(v, pairs[i].from);
+        const double seniority = 1.0 + (age_factor - 1.0) * fmin(age[i], grown_up) / grown_up;
+        const double trust = least_trust + (1.0 - least_trust) * v->trust[cell];
+        votes[i] = seniority * trust * (is_outer(cell) ? outer_factor : 1.0) / population[cell];
+    }
+}
+
+void l1l2_votes_learn(L1L2Votes *v, const L1L2Pair *pairs, const bool *inlier, int count)
+{
+    int population[CELLS] = {0}, agreeing[CELLS] = {0};
+    for (int i = 0; i < count; i++) {
+        const int cell = cell_of(v, pairs[i].from);
+        population[cell]++;
+        agreeing[cell] += inlier[i];
+    }
+    for (int cell = 0; cell < CELLS; cell++)
+        if (population[cell] > 0)
+            v->trust[cell] += learning_rate * ((double)agreeing[cell] / population[cell] - v->trust[cell]);
+}
+
+double l1l2_votes_coverage(const L1L2Votes *v, const L1L2Pair *pairs, const bool *inlier, int count)
+{
+    bool covered[CELLS] = {false};
+    int cells = 0;
+    for (int i = 0; i < count; i++)
+        if (inlier[i])
+            covered[cell_of(v, pairs[i].from)] = true;
+    for (int cell = 0; cell < CELLS; cell++)
+        cells += covered[cell];
+    return (double)cells / CELLS;
+}

@@ -6,6 +6,8 @@
 #ifndef L1L2_WARP_AVX2_H
 #define L1L2_WARP_AVX2_H
 
+#ifdef __AVX2__ /* so that it compiles alone, on every machine */
+
 #include <immintrin.h>
 #include <stdbool.h>
 
@@ -117,5 +119,7 @@ SPECIALIZED bool all_within(__m256i offset, int limit)
     const __m256i limits = _mm256_set1_epi32(limit);
     return _mm256_movemask_epi8(_mm256_cmpeq_epi32(_mm256_max_epu32(offset, limits), limits)) == -1;
 }
+
+#endif
 
 #endif

@@ -8,8 +8,8 @@
 
 #include "warp_kernel.h"
 
-/* One body, compiled for every number of taps and components: these must be constants for the loops over them to unroll,
- * so all that the body calls is inlined into it. */
+/* One body is compiled for every number of taps and components. These must be constants for the loops over them to
+ * unroll, so all that the body calls is inlined into it. */
 #if defined(__GNUC__)
 #define SPECIALIZED static inline __attribute__((always_inline))
 #else

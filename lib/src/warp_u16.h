@@ -37,8 +37,8 @@ static inline int l1l2_warp_u16_narrow_round(int depth)
     return (1 << (l1l2_warp_u16_narrow_shift(depth) - 1)) + (1 << (L1L2_WARP_WEIGHT_BITS - 1));
 }
 
-/* For a kernel of 2, 4 or 6 taps, 1, 2 or 4 interleaved components and a depth of 9..12 or 16 bits: the fastest that this
- * processor has. */
+/* For a kernel of 2, 4 or 6 taps, 1, 2 or 4 interleaved components and a depth of 9..12 or 16 bits: the fastest that
+ * this processor has. */
 L1L2WarpRun *l1l2_warp_u16_run(int taps, int components, int depth);
 
 /* Plain C, for every processor. */

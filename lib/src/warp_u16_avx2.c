@@ -2,9 +2,9 @@
 /*
  * The sample type of 16 bits for AVX2: eight sums at a time, the same bytes as plain C.
  *
- * Groups as in warp_avx2.h. A window is 16 bytes, so two taps of 2 or 4 components have one of their own; a shuffle
- * puts the two taps of each lane side by side, pmaddwd weighs them. What does not fit (an edge, a window too short, rows
- * too steep) is left to plain C.
+ * Groups as in warp_avx2.h. A window is 16 bytes: two taps of 2 or 4 components have one of their own. A shuffle puts
+ * the two taps of each lane side by side, pmaddwd weighs them. What does not fit (an edge, a window too short, rows too
+ * steep) is left to plain C.
  */
 #include "warp_avx2.h"
 #include "warp_u16_impl.h"
@@ -46,7 +46,8 @@ SPECIALIZED __m256i weigh_row(const uint8_t *low, const uint8_t *high, __m256i f
         /* A window of one component has the taps 2 and 3, too. */
         const int from = components == 1 ? k / 4 * 4 : k;
         const __m256i window = load_window(low + from * 2 * components, high + from * 2 * components, depth, wide);
-        const __m256i two = _mm256_shuffle_epi8(window, from == k ? first : _mm256_add_epi8(first, _mm256_set1_epi8(4)));
+        const __m256i order = from == k ? first : _mm256_add_epi8(first, _mm256_set1_epi8(4));
+        const __m256i two = _mm256_shuffle_epi8(window, order);
         sum = _mm256_add_epi32(sum, _mm256_madd_epi16(two, wx->pair[k / 2]));
     }
     return sum;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* For the implementations of warp_u16.h: one body, compiled for every number of taps and components, narrow and wide. */
+/* For the implementations of warp_u16.h: one body for every number of taps and components, narrow and wide. */
 #ifndef L1L2_WARP_U16_IMPL_H
 #define L1L2_WARP_U16_IMPL_H
 

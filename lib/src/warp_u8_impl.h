@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/*
- * For the implementations of warp_u8.h: one body, compiled for every number of taps and components. These must be
- * constants for the loops over them to unroll, so all that the body calls is inlined into it.
- */
+/* For the implementations of warp_u8.h: one body, compiled for every number of taps and components. */
 #ifndef L1L2_WARP_U8_IMPL_H
 #define L1L2_WARP_U8_IMPL_H
 

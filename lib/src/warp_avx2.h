@@ -6,12 +6,13 @@
 #ifndef L1L2_WARP_AVX2_H
 #define L1L2_WARP_AVX2_H
 
-#ifdef __AVX2__ /* so that it compiles alone, on every machine */
-
-#include <immintrin.h>
 #include <stdbool.h>
 
 #include "warp_sample.h"
+
+#ifdef __AVX2__ /* so that it compiles alone, on every machine */
+
+#include <immintrin.h>
 
 /* The weights of two taps in the 16-bit halves of each lane, for taps 0 and 1, 2 and 3, 4 and 5. */
 typedef struct Weights {

@@ -13,8 +13,7 @@
 #include "warp_u8.h"
 
 enum {
-    BAND_ROWS = 16, /* enough work to be worth a thread's while, few enough to share a frame out evenly */
-    RUN_SAMPLES = 256 /* the positions of a run stay in the first-level cache */
+    BAND_ROWS = 16 /* enough work to be worth a thread's while, few enough to share a frame out evenly */
 };
 
 struct L1L2Warp {
@@ -25,6 +24,7 @@ struct L1L2Warp {
 
 /* One plane of one frame. */
 typedef struct PlaneJob {
+    const L1L2WarpGenerators *generators;
     L1L2WarpAffine affine;
     L1L2WarpMeshPlane mesh; /* in place of `affine`, if it has a mesh */
     L1L2WarpPlane src;
@@ -76,20 +76,23 @@ static L1L2WarpRun *find_run(const L1L2WarpConfig *cfg, int taps, int components
     return (cfg->plain ? l1l2_warp_u8_run_plain : l1l2_warp_u8_run)(taps, components);
 }
 
+/* Tile by tile: what is the same for all rows of one is found once. */
 static void render_band(const PlaneJob *job, const L1L2WarpKernel *kernel, int band)
 {
-    int32_t x[RUN_SAMPLES], y[RUN_SAMPLES];
+    int32_t x[L1L2_WARP_RUN_SAMPLES + L1L2_WARP_RUN_SLACK], y[L1L2_WARP_RUN_SAMPLES + L1L2_WARP_RUN_SLACK];
     const int first = band * BAND_ROWS;
     const int end = first + BAND_ROWS < job->height ? first + BAND_ROWS : job->height;
-    for (int v = first; v < end; v++) {
-        uint8_t *row = job->dst + v * job->dst_stride;
-        for (int u = 0; u < job->width; u += RUN_SAMPLES) {
-            const int count = job->width - u < RUN_SAMPLES ? job->width - u : RUN_SAMPLES;
+    for (int u = 0; u < job->width; u += L1L2_WARP_RUN_SAMPLES) {
+        const int count = job->width - u < L1L2_WARP_RUN_SAMPLES ? job->width - u : L1L2_WARP_RUN_SAMPLES;
+        L1L2WarpCells cells;
+        if (job->mesh.mesh)
+            cells = l1l2_warp_mesh_cells(&job->mesh, u, count);
+        for (int v = first; v < end; v++) {
             if (job->mesh.mesh)
-                l1l2_warp_mesh_run(&job->mesh, u, v, count, x, y);
+                job->generators->mesh(&job->mesh, &cells, v, x, y);
             else
-                l1l2_warp_affine_run(&job->affine, u, v, count, x, y);
-            job->run(&job->src, kernel, x, y, count, row + u * job->sample_bytes);
+                job->generators->affine(&job->affine, u, v, count, x, y);
+            job->run(&job->src, kernel, x, y, count, job->dst + v * job->dst_stride + u * job->sample_bytes);
         }
     }
 }
@@ -118,6 +121,7 @@ void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const 
         const L1L2WarpGrid to = l1l2_warp_grid(format, i, cfg->chroma_site, cfg->out_width, cfg->out_height);
         PlaneJob *plane = &job.plane[i];
         *plane = (PlaneJob){
+            .generators = cfg->plain ? &l1l2_warp_generators_plain : l1l2_warp_generators(),
             .affine = l1l2_warp_affine(&map->affine, &to, &from),
             .mesh = {map->mesh, to, from},
             .src = {src[i], src_stride[i], l1l2_plane_size(cfg->in_width, sub_x),

@@ -19,7 +19,9 @@
 
 enum {
     L1L2_WARP_PHASE_BITS = 10, /* 1/1024 px: what rounding a position costs stays well under one grey level */
-    L1L2_WARP_PHASES = 1 << L1L2_WARP_PHASE_BITS
+    L1L2_WARP_PHASES = 1 << L1L2_WARP_PHASE_BITS,
+    L1L2_WARP_RUN_SAMPLES = 256, /* the positions of a run stay in the first-level cache */
+    L1L2_WARP_RUN_SLACK = 7
 };
 
 /* Where a plane's samples lie in the frame. */
@@ -40,17 +42,41 @@ typedef struct L1L2WarpAffine {
 /* map: output pixel -> source pixel, both with the origin at their frame's centre. */
 L1L2WarpAffine l1l2_warp_affine(const L1L2Mat *map, const L1L2WarpGrid *dst, const L1L2WarpGrid *src);
 
-/* Positions of output samples (u .. u + count - 1, v). They do not depend on where a run begins. Far outside they
- * saturate, at some 500000 samples from the plane's corner. */
-void l1l2_warp_affine_run(const L1L2WarpAffine *affine, int u, int v, int count, int32_t *x, int32_t *y);
-
 /* A mesh, as two planes have it: output samples are at `dst`, positions are samples of `src`. */
 typedef struct L1L2WarpMeshPlane {
     const L1L2WarpMesh *mesh;
     L1L2WarpGrid dst, src;
 } L1L2WarpMeshPlane;
 
-/* As l1l2_warp_affine_run(). */
-void l1l2_warp_mesh_run(const L1L2WarpMeshPlane *plane, int u, int v, int count, int32_t *x, int32_t *y);
+enum { L1L2_WARP_MAX_CELLS = L1L2_WARP_RUN_SAMPLES / (L1L2_WARP_MESH_CELL_PX / 4) + 2 }; /* of chroma, in a run */
+
+/* The cells of a run. In each, positions are a line, which starts at the cell's first sample wherever the run does. */
+typedef struct L1L2WarpCells {
+    int column, count;
+    int skipped;                          /* samples of the first cell that come before the run */
+    int from[L1L2_WARP_MAX_CELLS + 1];    /* sample of the run with which each cell begins; then the run's length */
+    double offset[L1L2_WARP_MAX_CELLS + 1]; /* of a cell's first sample from its left side, samples */
+    double slope;                         /* 1 / a cell's width in samples */
+} L1L2WarpCells;
+
+/* They are the same for all rows. count <= L1L2_WARP_RUN_SAMPLES. */
+L1L2WarpCells l1l2_warp_mesh_cells(const L1L2WarpMeshPlane *plane, int u, int count);
+
+/* They write the positions of a run of output samples of row v: (u .. u + count - 1, v), or what the cells cover; and
+ * anything at all to the L1L2_WARP_RUN_SLACK entries behind it. Positions do not depend on where a run begins; far
+ * outside they saturate, at some 500000 samples from the plane's corner. */
+typedef struct L1L2WarpGenerators {
+    void (*affine)(const L1L2WarpAffine *affine, int u, int v, int count, int32_t *x, int32_t *y);
+    void (*mesh)(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int v, int32_t *x, int32_t *y);
+} L1L2WarpGenerators;
+
+/* The fastest that this processor has; all give the same positions. */
+const L1L2WarpGenerators *l1l2_warp_generators(void);
+
+/* Plain C, for every processor. */
+extern const L1L2WarpGenerators l1l2_warp_generators_plain;
+
+/* There only where the build defines L1L2_WARP_AVX2, and for processors that have it. */
+extern const L1L2WarpGenerators l1l2_warp_generators_avx2;
 
 #endif

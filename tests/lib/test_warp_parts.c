@@ -5,6 +5,8 @@
 #include "warp_coords.h"
 #include "warp_kernel.h"
 
+enum { SLACK = L1L2_WARP_RUN_SLACK };
+
 /* The loop tests' index is the interpolation. */
 START_TEST(weights_sum_to_one_in_every_phase)
 {
@@ -92,7 +94,7 @@ END_TEST
 START_TEST(positions_are_the_maps_to_half_a_phase)
 {
     enum { COUNT = 16384 };
-    static int32_t x[COUNT], y[COUNT];
+    static int32_t x[COUNT + SLACK], y[COUNT + SLACK];
     L1L2Rng rng = l1l2_rng_seeded(1);
     for (int round = 0; round < 50; round++) {
         L1L2WarpAffine affine;
@@ -103,7 +105,7 @@ START_TEST(positions_are_the_maps_to_half_a_phase)
         affine.x[2] = l1l2_rng_next(&rng) / 1048576.0;
         affine.y[2] = l1l2_rng_next(&rng) / 1048576.0;
         const int v = (int)l1l2_rng_below(&rng, COUNT);
-        l1l2_warp_affine_run(&affine, 0, v, COUNT, x, y);
+        l1l2_warp_generators()->affine(&affine, 0, v, COUNT, x, y);
         double worst = 0.0;
         for (int u = 0; u < COUNT; u++) {
             const double at_x = affine.x[0] * u + affine.x[1] * v + affine.x[2];
@@ -119,14 +121,14 @@ END_TEST
 START_TEST(positions_do_not_depend_on_where_a_run_begins)
 {
     enum { COUNT = 1000 };
-    static int32_t x[COUNT], y[COUNT], part_x[COUNT], part_y[COUNT];
+    static int32_t x[COUNT + SLACK], y[COUNT + SLACK], part_x[COUNT + SLACK], part_y[COUNT + SLACK];
     const L1L2WarpAffine near = {{0.913, -0.017, 3.3}, {0.017, 0.913, -5.1}};
     const L1L2WarpAffine far = {{1e3, -0.017, 3.3}, {0.017, 0.913, 1e7}};
     const L1L2WarpAffine *const maps[] = {&near, &far};
     for (int k = 0; k < 2; k++) {
-        l1l2_warp_affine_run(maps[k], 0, 77, COUNT, x, y);
+        l1l2_warp_generators()->affine(maps[k], 0, 77, COUNT, x, y);
         for (int u = 0; u < COUNT; u += 37) {
-            l1l2_warp_affine_run(maps[k], u, 77, COUNT - u, part_x, part_y);
+            l1l2_warp_generators()->affine(maps[k], u, 77, COUNT - u, part_x, part_y);
             ck_assert_mem_eq(part_x, x + u, (size_t)(COUNT - u) * sizeof *x);
             ck_assert_mem_eq(part_y, y + u, (size_t)(COUNT - u) * sizeof *y);
         }
@@ -137,12 +139,34 @@ END_TEST
 START_TEST(positions_far_outside_stay_far_outside)
 {
     enum { COUNT = 100 };
-    static int32_t x[COUNT], y[COUNT];
+    static int32_t x[COUNT + SLACK], y[COUNT + SLACK];
     const L1L2WarpAffine affine = {{1e12, 0.0, 1e12}, {-0.5, 0.0, -1e300}};
-    l1l2_warp_affine_run(&affine, 0, 3, COUNT, x, y);
+    l1l2_warp_generators()->affine(&affine, 0, 3, COUNT, x, y);
     for (int u = 0; u < COUNT; u++) {
         ck_assert_int_gt(x[u] / L1L2_WARP_PHASES, 500000);
         ck_assert_int_lt(y[u] / L1L2_WARP_PHASES, -500000);
+    }
+}
+END_TEST
+
+START_TEST(every_processor_gives_the_positions_of_plain_c)
+{
+    enum { COUNT = 1000 };
+    static int32_t x[COUNT + SLACK], y[COUNT + SLACK], plain_x[COUNT + SLACK], plain_y[COUNT + SLACK];
+    L1L2Rng rng = l1l2_rng_seeded(2);
+    for (int round = 0; round < 2000; round++) {
+        L1L2WarpAffine affine;
+        for (int k = 0; k < 3; k++) {
+            const double size = k == 2 ? 0.25 : 1073741824.0;
+            affine.x[k] = l1l2_rng_next(&rng) / size - 2.0;
+            affine.y[k] = l1l2_rng_next(&rng) / size - 2.0;
+        }
+        const int u = (int)l1l2_rng_below(&rng, 16000), v = (int)l1l2_rng_below(&rng, 16000);
+        const int count = 1 + (int)l1l2_rng_below(&rng, COUNT);
+        l1l2_warp_generators()->affine(&affine, u, v, count, x, y);
+        l1l2_warp_generators_plain.affine(&affine, u, v, count, plain_x, plain_y);
+        ck_assert_mem_eq(x, plain_x, (size_t)count * sizeof *x);
+        ck_assert_mem_eq(y, plain_y, (size_t)count * sizeof *y);
     }
 }
 END_TEST
@@ -161,6 +185,7 @@ int main(void)
     tcase_add_loop_test(tc, halved_planes_have_their_samples_at_their_site, 0, 3);
     tcase_add_test(tc, positions_are_the_maps_to_half_a_phase);
     tcase_add_test(tc, positions_do_not_depend_on_where_a_run_begins);
+    tcase_add_test(tc, every_processor_gives_the_positions_of_plain_c);
     tcase_add_test(tc, positions_far_outside_stay_far_outside);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);

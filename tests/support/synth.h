@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Synthetic clips whose camera motion is known exactly: a textured, periodic scene seen by a camera that pans and
- * shakes. Deterministic: the same config gives the same pixels and the same truth. Any frame t >= 0 can be asked for,
- * in any order.
+ * shakes, and most of what makes real footage hard. Deterministic: the same config gives the same pixels and the same
+ * truth. Any frame t >= 0 can be asked for, in any order. What is zero in a config is absent from the clip.
  *
  * Conventions are the public header's: pixels, origin at the frame's centre, x right, y down, 3x3 row-major.
  * The scene's unit is the pixel too (a larger frame sees more of it), and it repeats every SYNTH_SCENE_PX.
@@ -11,8 +11,48 @@
 #define SYNTH_H
 
 #include <l1l2stab/l1l2stab.h>
+#include <stdbool.h>
 
 #define SYNTH_SCENE_PX 1024
+#define SYNTH_MAX_EVENTS 8
+#define SYNTH_MAX_MOVERS 12
+
+/* Who holds the camera: the spectrum of the shake. */
+typedef enum SynthHold {
+    SYNTH_HAND = 0, /* 0.6 to 7 Hz, weaker the faster */
+    SYNTH_STAND,    /* standing still: slow sway, half as strong with each octave, and a trace of tremor */
+    SYNTH_WALK,     /* two steps a second and their harmonics: the camera bobs, sways and rolls with them */
+    SYNTH_VEHICLE   /* slow sway, and a rattle of 10 to 20 Hz */
+} SynthHold;
+
+/* What happens to a clip, to frames [from, from + frames) unless it says otherwise. */
+typedef enum SynthEventKind {
+    SYNTH_NONE = 0,
+    SYNTH_CUT,      /* `from` is the first frame of another shot; `frames` does not count */
+    SYNTH_DISSOLVE, /* into another shot */
+    SYNTH_FADE_OUT, /* to black, and it stays black */
+    SYNTH_FADE_IN,  /* from black */
+    SYNTH_BLACK,    /* black frames */
+    SYNTH_FLASH,    /* whiter by `amount`, 1 is all white */
+    SYNTH_COVER,    /* a hand comes before the lens and goes again */
+    SYNTH_GAIN,     /* luma x `amount`: 0.1 is dark */
+    SYNTH_RAMP,     /* the gain goes to `amount` by then, and stays there */
+    SYNTH_FLICKER,  /* the gain is 1 +- `amount`, by 6 Hz */
+    SYNTH_BLUR,     /* out of focus: a disc of `amount` px across */
+    SYNTH_FREEZE    /* the frame before them is shown again */
+} SynthEventKind;
+
+typedef struct SynthEvent {
+    SynthEventKind kind;
+    int from, frames;
+    double amount;
+} SynthEvent;
+
+/* Never moves, and covers the scene. */
+enum {
+    SYNTH_OVERLAY_LOGO = 1 << 0,    /* bottom right, an eighth of the width */
+    SYNTH_OVERLAY_TIMECODE = 1 << 1 /* top left: the frame's number; its digits change */
+};
 
 typedef struct SynthConfig {
     int width, height;    /* pixels */
@@ -22,7 +62,7 @@ typedef struct SynthConfig {
     double roll;          /* rms of the shake of the roll, rad */
     double zoom;          /* rms of the shake of the zoom, as a ratio: 0.02 is about +-2 % */
     double noise;         /* sigma of the luma noise, grey levels */
-    double foreground;    /* part of the frame that an object with a motion of its own covers, [0, 0.6] */
+    double foreground;    /* part of the frame that objects with a motion of their own cover, [0, 0.75] */
     L1L2StabChromaSite chroma_site;
     uint64_t seed;        /* of the scene, the shake and the noise */
     double turn;          /* the camera's steady roll, rad/frame */
@@ -30,35 +70,54 @@ typedef struct SynthConfig {
     double vibration_roll; /* ditto of the roll, rad */
     double vibration_hz;
     double readout;       /* rolling shutter: from the first row's time to the last row's, s; 0: all rows at once */
+    SynthHold hold;
+    int movers;           /* 0: the foreground is a disc that sways before the lens. 1: one ellipse that moves in the
+                           * scene, about the frame's middle. 2..SYNTH_MAX_MOVERS: walkers that come and go */
+    double mover_speed;   /* of these in the scene, px/frame; of one: at most */
+    double parallax;      /* nearer layers before the scene, moving up to 1 + parallax times as far as it */
+    double exposure;      /* how long the shutter is open, frames: motion blur */
+    double letterbox, pillarbox; /* part of the height, the width, that black bars take */
+    unsigned overlay;     /* SYNTH_OVERLAY_* */
+    int repeat_every;     /* n > 1: every n-th frame is the one before it again, 5: 24 frames as 30 */
+    bool fresh_noise;     /* repeated frames have noise of their own */
+    double coding;        /* step to which levels are rounded, otherwise in each frame and block; grey levels */
+    SynthEvent event[SYNTH_MAX_EVENTS];
 } SynthConfig;
 
 typedef struct Synth Synth;
 
-/* 640x360, 30 frames/s, no pan, 4 px of shake, 0.005 rad of roll, no zoom, noise or foreground, seed 1. */
+/* 640x360, 30 frames/s, 4 px of shake, 0.005 rad of roll, seed 1, and nothing else. */
 SynthConfig synth_defaults(void);
 
 /* Never NULL: aborts when out of memory. */
 Synth *synth_new(const SynthConfig *cfg);
 void synth_free(Synth *s);
 
-/* M_t: frame t to the scene; with a rolling shutter, its middle row. */
+/* M_t: frame t to the scene, its farthest layer; with a rolling shutter, the middle row. */
 void synth_camera(const Synth *s, int t, double M[9]);
 
 /* The camera at any time, in frames; it may be negative. */
 void synth_camera_at(const Synth *s, double frames, double M[9]);
 
-/* When the row of frame t that lies y px below its centre was taken, in frames: t + readout fps y / height. Chroma rows
- * too are taken when their own y says. */
+/* When the row of frame t that lies y px below its centre was taken, in frames: t + readout fps y / height, or, where
+ * frame t is a repeated one, the time of that. Chroma rows too are taken when their own y says. */
 double synth_row_time(const Synth *s, int t, double y);
 
 /* F_t = M_{t-1}^-1 M_t: frame t to frame t-1; the identity for t = 0. */
 void synth_motion(const Synth *s, int t, double F[9]);
 
-/* Frame t, noise and foreground included, at the config's size. data, stride: as in L1L2StabFrame. */
+/* The shot that most of frame t shows, from 0. All shots have the one camera. */
+int synth_shot(const Synth *s, int t);
+
+/* Frame t at the config's size. data, stride: as in L1L2StabFrame. */
 void synth_render(const Synth *s, int t, L1L2StabFormat format, uint8_t *const data[4], const ptrdiff_t stride[4]);
 void synth_render_gray(const Synth *s, int t, uint8_t *data, ptrdiff_t stride);
 
-/* What a camera at M would see, without noise and foreground, at any size: what a perfect warp would give. */
+/* The same picture in 10 bits, in the low bits of two bytes each; stride in bytes. */
+void synth_render_gray10(const Synth *s, int t, uint16_t *data, ptrdiff_t stride);
+
+/* What a camera at M would see of the first shot, at any size: what a perfect warp would give. No noise, foreground,
+ * overlay or event. */
 void synth_render_view(const Synth *s, const double M[9], int width, int height, L1L2StabFormat format,
                        uint8_t *const data[4], const ptrdiff_t stride[4]);
 

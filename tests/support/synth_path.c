@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A shake is a sum of tones, scaled to an rms of 1. */
 #include "synth_path.h"
 
 #include <math.h>
@@ -6,23 +7,59 @@
 
 #include "synth_scene.h"
 
-enum { TONES = 6 };
+enum { TONES = 8 };
 
 enum { CHANNEL_X, CHANNEL_Y, CHANNEL_ROLL, CHANNEL_ZOOM };
 
+typedef struct Tone {
+    double hz, amplitude;
+} Tone;
+
 static const double two_pi = 6.283185307179586;
 
-/* The hand's shake: tones from 0.6 to 7 Hz, weaker the faster, of rms 1 in all. */
+/* The body falls with each step, and leans from foot to foot: half as often. */
+static const Tone steps[TONES] = {{0.4, 0.4}, {2.0, 1.0}, {4.0, 0.4}, {6.0, 0.15}, {8.0, 0.05}};
+static const Tone leans[TONES] = {{0.3, 0.5}, {1.0, 1.0}, {2.0, 0.4}, {3.0, 0.25}, {5.0, 0.1}};
+static const Tone standing[TONES] = {{0.1, 1.0}, {0.2, 0.5}, {0.4, 0.25}, {0.8, 0.125}, {1.6, 0.06}, {3.2, 0.03},
+                                     {9.0, 0.03}};
+static const Tone driving[TONES] = {{0.25, 1.0}, {0.6, 0.5}, {1.4, 0.3}, {10.5, 0.12}, {13.0, 0.15}, {16.0, 0.12},
+                                    {19.0, 0.1}};
+
+static uint64_t key_of(const SynthConfig *cfg, int channel)
+{
+    return synth_hash(cfg->seed) + (uint64_t)(16 * channel);
+}
+
+/* The tones of a hold; `spread`: whether the seed moves each by itself, or only all together. */
+static int tones_of(SynthHold hold, int channel, Tone tone[TONES], bool *spread)
+{
+    static const double hand_hz[] = {0.6, 1.1, 1.9, 3.1, 4.7, 7.0};
+    const Tone *table = hold == SYNTH_STAND ? standing
+                        : hold == SYNTH_VEHICLE ? driving
+                        : channel == CHANNEL_Y || channel == CHANNEL_ZOOM ? steps : leans;
+    int count = 0;
+    *spread = hold != SYNTH_WALK; /* harmonics stay harmonics */
+    if (hold == SYNTH_HAND)
+        for (; count < 6; count++)
+            tone[count] = (Tone){hand_hz[count], 1.0 / sqrt(hand_hz[count])};
+    else
+        for (; count < TONES && table[count].hz > 0.0; count++)
+            tone[count] = table[count];
+    return count;
+}
+
 static double shake(const SynthConfig *cfg, int channel, double frames)
 {
-    static const double hz[TONES] = {0.6, 1.1, 1.9, 3.1, 4.7, 7.0};
+    Tone tone[TONES];
+    bool spread;
+    const int tones = tones_of(cfg->hold, channel, tone, &spread);
+    const double pace = 0.85 + 0.3 * synth_fraction(key_of(cfg, 8));
     double sum = 0.0, power = 0.0;
-    for (int k = 0; k < TONES; k++) {
-        const uint64_t key = synth_hash(cfg->seed) + (uint64_t)(16 * channel + 2 * k);
-        const double amplitude = 1.0 / sqrt(hz[k]);
-        const double f = hz[k] * (0.85 + 0.3 * synth_fraction(key));
-        sum += amplitude * sin(two_pi * (f * frames / cfg->fps + synth_fraction(key + 1)));
-        power += 0.5 * amplitude * amplitude;
+    for (int k = 0; k < tones; k++) {
+        const uint64_t key = key_of(cfg, channel) + (uint64_t)(2 * k);
+        const double f = tone[k].hz * (spread ? 0.85 + 0.3 * synth_fraction(key) : pace);
+        sum += tone[k].amplitude * sin(two_pi * (f * frames / cfg->fps + synth_fraction(key + 1)));
+        power += 0.5 * tone[k].amplitude * tone[k].amplitude;
     }
     return sum / sqrt(power);
 }
@@ -30,8 +67,7 @@ static double shake(const SynthConfig *cfg, int channel, double frames)
 /* An engine: one tone, of amplitude 1. */
 static double vibration(const SynthConfig *cfg, int channel, double frames)
 {
-    const double phase = synth_fraction(synth_hash(cfg->seed) + (uint64_t)(16 * channel + 15));
-    return sin(two_pi * (cfg->vibration_hz * frames / cfg->fps + phase));
+    return sin(two_pi * (cfg->vibration_hz * frames / cfg->fps + synth_fraction(key_of(cfg, channel) + 15)));
 }
 
 void synth_path_pose(const SynthConfig *cfg, double frames, double M[9])

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The camera's path in closed form, for any time. */
+/* The camera's path in closed form, for any time: a steady pan and roll, the shake of whoever holds it, a vibration. */
 #ifndef SYNTH_PATH_H
 #define SYNTH_PATH_H
 

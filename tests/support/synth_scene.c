@@ -2,17 +2,18 @@
 /*
  * Noise of equal strength in every octave, as in natural pictures, made coarse to fine: each level is the finer
  * sampling of the cubic B-spline of the level before it (two-scale relation), plus new noise. Shapes with soft edges
- * are drawn over it: they give the corners.
+ * are drawn over it: they give the corners. A lookup's positions are 32 bit fixed-point numbers whose overflow is the
+ * tile's repetition.
  */
 #include "synth_scene.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 enum {
     LUMA_LOG2 = 11,
     CHROMA_LOG2 = 9,
+    MASK_LOG2 = 9,
     COARSEST_LOG2 = 2,
     SHAPES = 500
 };
@@ -128,9 +129,35 @@ static SynthTile quantize(const float *tile, int log2_size, float gain, float ce
     return out;
 }
 
-void synth_scene_init(SynthScene *scene, uint64_t seed)
+/* Some blobs, 100 px and more across, on a quarter of the area; their edges are two texels wide. */
+static SynthTile make_mask(uint64_t seed)
+{
+    const size_t count = (size_t)1 << (2 * MASK_LOG2);
+    float *tile = make_noise(MASK_LOG2, 64, seed);
+    float low = -8.0f, high = 8.0f; /* the level that a quarter exceeds, by bisection */
+    for (int i = 0; i < 20; i++) {
+        const float middle = 0.5f * (low + high);
+        size_t above = 0;
+        for (size_t k = 0; k < count; k++)
+            above += tile[k] > middle;
+        if (above > count / 4)
+            low = middle;
+        else
+            high = middle;
+    }
+    SynthTile out = {MASK_LOG2, synth_alloc(count, sizeof *out.texel)};
+    for (size_t k = 0; k < count; k++) {
+        const float steepness = 16.0f; /* the noise rises by some 1/30 a texel */
+        out.texel[k] = (uint16_t)(255.0f * 128.0f * fminf(fmaxf((tile[k] - low) * steepness + 0.5f, 0.0f), 1.0f));
+    }
+    free(tile);
+    return out;
+}
+
+void synth_scene_init(SynthScene *scene, uint64_t seed, bool with_mask)
 {
     const uint64_t key = synth_hash(seed);
+    *scene = (SynthScene){0};
     float *tile = make_noise(LUMA_LOG2, 4, key);
     for (int i = 0; i < SHAPES; i++)
         draw_shape(tile, LUMA_LOG2, synth_hash(key + 100u + (uint64_t)i));
@@ -141,6 +168,8 @@ void synth_scene_init(SynthScene *scene, uint64_t seed)
         scene->chroma[c] = quantize(tile, CHROMA_LOG2, 0.8f, 128.0f, 36.0f);
         free(tile);
     }
+    if (with_mask)
+        scene->mask = make_mask(key + 60u);
 }
 
 void synth_scene_clear(SynthScene *scene)
@@ -148,4 +177,24 @@ void synth_scene_clear(SynthScene *scene)
     free(scene->luma.texel);
     free(scene->chroma[0].texel);
     free(scene->chroma[1].texel);
+    free(scene->mask.texel);
+}
+
+void synth_tile_lookup(const SynthTile *tile, double x, double y, double dx, double dy, int n, uint16_t *deep)
+{
+    const int bits = tile->log2_size, shift = 32 - bits;
+    const uint32_t mask = (1u << bits) - 1u;
+    const double turn = 0x1p32 / SYNTH_SCENE_PX; /* the tile's width is 2^32 */
+    const double centre = (double)(1u << (shift - 1)); /* texel centres are at half-integers too */
+    uint32_t u = (uint32_t)(int64_t)floor(fmod(x, SYNTH_SCENE_PX) * turn - centre);
+    uint32_t v = (uint32_t)(int64_t)floor(fmod(y, SYNTH_SCENE_PX) * turn - centre);
+    const uint32_t du = (uint32_t)(int64_t)floor(dx * turn + 0.5), dv = (uint32_t)(int64_t)floor(dy * turn + 0.5);
+    for (int i = 0; i < n; i++, u += du, v += dv) {
+        const uint32_t x0 = u >> shift, x1 = (x0 + 1u) & mask, fx = (u >> (shift - 11)) & 2047u;
+        const uint32_t y0 = v >> shift, y1 = (y0 + 1u) & mask, fy = (v >> (shift - 11)) & 2047u;
+        const uint16_t *r0 = tile->texel + ((size_t)y0 << bits), *r1 = tile->texel + ((size_t)y1 << bits);
+        const uint32_t top = (r0[x0] * (2048u - fx) + r0[x1] * fx) >> 7;
+        const uint32_t bottom = (r1[x0] * (2048u - fx) + r1[x1] * fx) >> 7;
+        deep[i] = (uint16_t)((top * (2048u - fy) + bottom * fy) >> 16);
+    }
 }

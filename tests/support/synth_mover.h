@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* Things that move by themselves: textured ellipses before the scene. They move over the frame, and do not turn. */
+#ifndef SYNTH_MOVER_H
+#define SYNTH_MOVER_H
+
+#include "synth.h"
+
+typedef struct SynthMover {
+    double x, y;               /* centre in the frame, px */
+    double half_w, half_h;     /* semi-axes, px; nothing if 0 */
+    double texture_x, texture_y; /* of its centre in the scene's tile, px */
+} SynthMover;
+
+/* Where the foreground is for a camera at M, at a time in frames. Returns how many there are. */
+int synth_movers_at(const SynthConfig *cfg, double frames, const double M[9], SynthMover mover[SYNTH_MAX_MOVERS]);
+
+#endif

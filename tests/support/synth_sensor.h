@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/* From what the lens shows to code values: exposure, fades, what covers the lens, rounding, noise, coding. */
+#ifndef SYNTH_SENSOR_H
+#define SYNTH_SENSOR_H
+
+#include "synth_span.h"
+#include "synth_timeline.h"
+
+typedef struct SynthSensor {
+    double noise;    /* sigma, grey levels */
+    double coding;   /* step, grey levels */
+    int8_t *coarse;  /* the noise in grey levels; NULL without noise */
+    int16_t *fine;   /* the same noise in 1/256 grey levels */
+} SynthSensor;
+
+void synth_sensor_init(SynthSensor *sensor, const SynthConfig *cfg);
+void synth_sensor_clear(SynthSensor *sensor);
+
+/* What the moment's events do to the light, in place. */
+void synth_sensor_expose(const SynthMoment *m, int width, const SynthSpan *span, uint16_t *deep);
+
+/* Code values of `depth` bits, 8..16, of frame t. grain: whose noise. */
+void synth_sensor_read(const SynthSensor *sensor, int t, int grain, int depth, const SynthSpan *span,
+                       const uint16_t *deep, uint16_t *code);
+
+#endif

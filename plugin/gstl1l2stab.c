@@ -42,10 +42,9 @@
 #include "gstl1l2stabcaps.h"
 #include "gstl1l2stabcarry.h"
 #include "gstl1l2stabglue.h"
-#include "gstl1l2stablatency.h"
+#include "gstl1l2stabinput.h"
 #include "gstl1l2staboutput.h"
 #include "gstl1l2stabsettings.h"
-#include "gstl1l2stabstream.h"
 
 GST_DEBUG_CATEGORY (gst_l1l2_stab_debug);
 #define GST_CAT_DEFAULT gst_l1l2_stab_debug
@@ -55,10 +54,7 @@ struct _GstL1L2Stab
   GstBaseTransform parent;
 
   GstL1L2StabSettings settings; /* locks by itself */
-  GstL1L2StabLatency latency;   /* so does this */
-
-  /* Under the sink pad's stream lock, but for its position. */
-  GstL1L2StabStream stream;
+  GstL1L2StabOutput output;     /* the frames between the pads */
 };
 
 G_DEFINE_TYPE (GstL1L2Stab, gst_l1l2_stab, GST_TYPE_BASE_TRANSFORM);
@@ -72,7 +68,7 @@ static GstFlowReturn
 gst_l1l2_stab_transform (GstBaseTransform * trans, GstBuffer * input,
     GstBuffer * output)
 {
-  GstL1L2StabStream *stream = &GST_L1L2_STAB (trans)->stream;
+  GstL1L2StabStream *stream = &GST_L1L2_STAB (trans)->output.stream;
   L1L2StabInfo info;
   GstL1L2StabMap map;
   GstFlowReturn ret;
@@ -89,9 +85,13 @@ gst_l1l2_stab_transform (GstBaseTransform * trans, GstBuffer * input,
 static GstFlowReturn
 gst_l1l2_stab_generate_output (GstBaseTransform * trans, GstBuffer ** output)
 {
+  GstL1L2Stab *self = GST_L1L2_STAB (trans);
+
   *output = NULL;
-  return gst_l1l2_stab_output_push_ready (trans,
-      &GST_L1L2_STAB (trans)->stream);
+  /* Key frames alone show no motion: each goes by itself. */
+  if (trans->segment.flags & GST_SEGMENT_FLAG_TRICKMODE_KEY_UNITS)
+    return gst_l1l2_stab_output_drain (&self->output);
+  return gst_l1l2_stab_output_push_ready (&self->output);
 }
 
 static GstFlowReturn
@@ -99,7 +99,6 @@ gst_l1l2_stab_submit_input_buffer (GstBaseTransform * trans,
     gboolean is_discont, GstBuffer * input)
 {
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
-  gdouble lambda, crop_ratio;
   GstFlowReturn ret;
 
   /* The base class renegotiates where it has to, and leaves the frame in queued_buf. */
@@ -107,24 +106,8 @@ gst_l1l2_stab_submit_input_buffer (GstBaseTransform * trans,
       ->submit_input_buffer (trans, is_discont, input);
   if (ret != GST_FLOW_OK)
     return ret;
-  input = g_steal_pointer (&trans->queued_buf);
-
-  /* The frame's own flag: is_discont stays set until something is pushed. A frame that could not be pushed before,
-   * for want of a buffer, goes first. */
-  if (GST_BUFFER_IS_DISCONT (input))
-    ret = gst_l1l2_stab_output_drain (trans, &self->stream);
-  else
-    ret = gst_l1l2_stab_output_push_ready (trans, &self->stream);
-  if (ret == GST_FLOW_OK) {
-    gst_l1l2_stab_settings_sample (&self->settings, &trans->segment, input,
-        &lambda, &crop_ratio);
-    ret = gst_l1l2_stab_stream_set_live (&self->stream, lambda, crop_ratio);
-  }
-  if (ret != GST_FLOW_OK) {
-    gst_buffer_unref (input);
-    return ret;
-  }
-  return gst_l1l2_stab_stream_push (&self->stream, input);
+  return gst_l1l2_stab_input_frame (&self->output, &self->settings,
+      g_steal_pointer (&trans->queued_buf));
 }
 
 static gboolean
@@ -132,33 +115,11 @@ gst_l1l2_stab_sink_event (GstBaseTransform * trans, GstEvent * event)
 {
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
 
-  switch (GST_EVENT_TYPE (event)) {
-    case GST_EVENT_STREAM_START:
-    case GST_EVENT_SEGMENT_DONE:
-    case GST_EVENT_GAP:
-    case GST_EVENT_EOS:
-      gst_l1l2_stab_output_drain (trans, &self->stream);
-      break;
-    case GST_EVENT_SEGMENT:
-      gst_l1l2_stab_output_drain (trans, &self->stream);
-      gst_l1l2_stab_output_new_segment (trans, &self->stream);
-      break;
-    case GST_EVENT_CAPS:
-      /* set_caps() drains, if they are not the same as before. */
-      gst_l1l2_stab_settings_adopt (&self->settings,
-          GST_BASE_TRANSFORM_SINK_PAD (trans), event);
-      break;
-    case GST_EVENT_FLUSH_STOP:
-      gst_l1l2_stab_output_flush (trans, &self->stream);
-      break;
-    default:
-      if (GST_EVENT_IS_SERIALIZED (event)
-          && !gst_l1l2_stab_stream_is_empty (&self->stream)) {
-        gst_l1l2_stab_stream_add_event (&self->stream, event);
-        return TRUE;
-      }
-      break;
-  }
+  if (gst_l1l2_stab_input_event (&self->output, event))
+    return TRUE;
+  if (GST_EVENT_TYPE (event) == GST_EVENT_CAPS)
+    gst_l1l2_stab_settings_adopt (&self->settings,
+        GST_BASE_TRANSFORM_SINK_PAD (trans), event);
   return GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)->sink_event
       (trans, event);
 }
@@ -171,14 +132,14 @@ gst_l1l2_stab_query (GstBaseTransform * trans, GstPadDirection direction,
   const GstQueryType type = GST_QUERY_TYPE (query);
 
   if (direction == GST_PAD_SRC && type == GST_QUERY_LATENCY)
-    return gst_l1l2_stab_latency_query (&self->latency,
+    return gst_l1l2_stab_latency_query (&self->output.latency,
         GST_BASE_TRANSFORM_SINK_PAD (trans), query);
   if (direction == GST_PAD_SRC && type == GST_QUERY_POSITION
-      && gst_l1l2_stab_output_query_position (trans, &self->stream, query))
+      && gst_l1l2_stab_output_query_position (&self->output, query))
     return TRUE;
   /* Upstream wants its buffers back. */
   if (direction == GST_PAD_SINK && type == GST_QUERY_DRAIN)
-    gst_l1l2_stab_output_drain (trans, &self->stream);
+    gst_l1l2_stab_output_drain (&self->output);
   return GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)->query (trans,
       direction, query);
 }
@@ -208,12 +169,12 @@ gst_l1l2_stab_set_caps (GstBaseTransform * trans, GstCaps * in_caps,
       || !gst_l1l2_stab_glue_parse_caps (&out_info, out_caps))
     return FALSE;
 
-  gst_l1l2_stab_output_drain (trans, &self->stream);
+  gst_l1l2_stab_output_drain (&self->output);
   gst_l1l2_stab_settings_in_use (&self->settings, &settings);
-  if (!gst_l1l2_stab_stream_open (&self->stream, &settings, &in_info,
+  if (!gst_l1l2_stab_stream_open (&self->output.stream, &settings, &in_info,
           &out_info))
     return FALSE;
-  gst_l1l2_stab_latency_set (&self->latency, settings.window, in_caps);
+  gst_l1l2_stab_latency_set (&self->output.latency, settings.window, in_caps);
   return TRUE;
 }
 
@@ -242,6 +203,19 @@ gst_l1l2_stab_transform_meta (GstBaseTransform * trans, GstBuffer * output,
 
 /* --- object --- */
 
+static GstStateChangeReturn
+gst_l1l2_stab_change_state (GstElement * element, GstStateChange transition)
+{
+  GstL1L2Stab *self = GST_L1L2_STAB (element);
+
+  if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING
+      || transition == GST_STATE_CHANGE_PLAYING_TO_PAUSED)
+    gst_l1l2_stab_timer_set_playing (&self->output.timer,
+        transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING);
+  return GST_ELEMENT_CLASS (gst_l1l2_stab_parent_class)->change_state (element,
+      transition);
+}
+
 /* Settings that contradict each other are told before there is a stream: any frame will do for the check. */
 static gboolean
 gst_l1l2_stab_start (GstBaseTransform * trans)
@@ -253,16 +227,17 @@ gst_l1l2_stab_start (GstBaseTransform * trans)
   gst_l1l2_stab_settings_in_use (&self->settings, &settings);
   settings.format = L1L2STAB_FORMAT_GRAY8;
   settings.width = settings.height = GST_L1L2_STAB_MIN_SIZE;
-  gst_l1l2_stab_glue_logger (&settings.logger, &self->stream.log);
+  gst_l1l2_stab_glue_logger (&settings.logger, &self->output.stream.log);
   delay = l1l2stab_config_delay (&settings);
   if (delay < 0) {
-    gst_l1l2_stab_glue_flow (GST_ELEMENT_CAST (self), delay, &self->stream.log);
+    gst_l1l2_stab_glue_flow (GST_ELEMENT_CAST (self), delay,
+        &self->output.stream.log);
     return FALSE;
   }
 
   /* A dropped input would be a hole in the camera's path. */
   gst_base_transform_set_qos_enabled (trans, FALSE);
-  gst_l1l2_stab_latency_set (&self->latency, settings.window, NULL);
+  gst_l1l2_stab_latency_set (&self->output.latency, settings.window, NULL);
   return TRUE;
 }
 
@@ -271,8 +246,7 @@ gst_l1l2_stab_stop (GstBaseTransform * trans)
 {
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
 
-  gst_l1l2_stab_output_new_segment (trans, &self->stream);
-  gst_l1l2_stab_stream_close (&self->stream);
+  gst_l1l2_stab_output_stop (&self->output);
   gst_l1l2_stab_settings_release (&self->settings);
   return TRUE;
 }
@@ -298,7 +272,7 @@ gst_l1l2_stab_get_property (GObject * object, guint id, GValue * value,
 static void
 gst_l1l2_stab_finalize (GObject * object)
 {
-  gst_l1l2_stab_stream_close (&GST_L1L2_STAB (object)->stream);
+  gst_l1l2_stab_output_clear (&GST_L1L2_STAB (object)->output);
   G_OBJECT_CLASS (gst_l1l2_stab_parent_class)->finalize (object);
 }
 
@@ -321,6 +295,8 @@ gst_l1l2_stab_class_init (GstL1L2StabClass * klass)
   gst_element_class_set_static_metadata (element_class, "Video stabilizer",
       "Filter/Effect/Video", "Steadies shaken video, one window of frames late",
       "The l1l2stab authors");
+
+  element_class->change_state = GST_DEBUG_FUNCPTR (gst_l1l2_stab_change_state);
 
   trans_class->start = GST_DEBUG_FUNCPTR (gst_l1l2_stab_start);
   trans_class->stop = GST_DEBUG_FUNCPTR (gst_l1l2_stab_stop);
@@ -348,8 +324,7 @@ gst_l1l2_stab_init (GstL1L2Stab * self)
   GstBaseTransform *trans = GST_BASE_TRANSFORM_CAST (self);
 
   gst_l1l2_stab_settings_init (&self->settings, GST_OBJECT_CAST (self));
-  gst_l1l2_stab_latency_init (&self->latency, GST_ELEMENT_CAST (self));
-  gst_l1l2_stab_stream_init (&self->stream, GST_ELEMENT_CAST (self));
+  gst_l1l2_stab_output_init (&self->output, trans);
 
   gst_base_transform_set_passthrough (trans, FALSE);
   gst_base_transform_set_in_place (trans, FALSE);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Which of a frame's metas go with it into the output. What is bound to a place in the picture moves with the picture. */
+/* Which of a frame's metas go with it into the output. What is bound to a place in the picture moves with it. */
 #ifndef GST_L1L2_STAB_CARRY_H
 #define GST_L1L2_STAB_CARRY_H
 

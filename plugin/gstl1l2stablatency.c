@@ -39,6 +39,9 @@ gst_l1l2_stab_latency_set (GstL1L2StabLatency * latency, gint window,
   GST_OBJECT_LOCK (latency->element);
   changed = latency->latency != time;
   latency->latency = time;
+  latency->limit = time - time / window / 2;
+  if (!caps)
+    latency->has_upstream = FALSE;
   GST_OBJECT_UNLOCK (latency->element);
   if (caps && changed)
     gst_element_post_message (latency->element,
@@ -57,10 +60,43 @@ gst_l1l2_stab_latency_query (GstL1L2StabLatency * latency, GstPad * sink_pad,
 
   gst_query_parse_latency (query, &live, &least, &most);
   GST_OBJECT_LOCK (latency->element);
+  latency->has_upstream = TRUE;
+  latency->is_live = live;
   least += latency->latency;
   if (GST_CLOCK_TIME_IS_VALID (most))
     most += latency->latency;
   GST_OBJECT_UNLOCK (latency->element);
   gst_query_set_latency (query, live, least, most);
   return TRUE;
+}
+
+GstClockTime
+gst_l1l2_stab_latency_limit (GstL1L2StabLatency * latency)
+{
+  GstClockTime limit;
+
+  GST_OBJECT_LOCK (latency->element);
+  limit = latency->limit;
+  GST_OBJECT_UNLOCK (latency->element);
+  return limit;
+}
+
+gboolean
+gst_l1l2_stab_latency_is_live (GstL1L2StabLatency * latency, GstPad * sink_pad)
+{
+  gboolean has_upstream, is_live;
+
+  GST_OBJECT_LOCK (latency->element);
+  has_upstream = latency->has_upstream;
+  is_live = latency->is_live;
+  GST_OBJECT_UNLOCK (latency->element);
+  if (!has_upstream) {
+    GstQuery *query = gst_query_new_latency ();
+
+    is_live = FALSE;
+    if (gst_l1l2_stab_latency_query (latency, sink_pad, query))
+      gst_query_parse_latency (query, &is_live, NULL, NULL);
+    gst_query_unref (query);
+  }
+  return is_live;
 }

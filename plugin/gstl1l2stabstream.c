@@ -8,8 +8,11 @@
 /* A frame that the library holds. */
 typedef struct
 {
+  GList link;                   /* in `queue` */
+  GQueue *queue;                /* NULL: in none yet */
   GstBuffer *buffer;            /* timestamps, flags, metas; the pixels too, unless they were copied */
   GstVideoFrame pixels;         /* mapped for reading; has a reference of its own */
+  GstClockTime arrival;         /* running time, or NONE */
 } HeldFrame;
 
 /* An event that must not overtake the frames that came before it. */
@@ -25,8 +28,8 @@ gst_l1l2_stab_stream_init (GstL1L2StabStream * stream, GstElement * element)
   memset (stream, 0, sizeof (*stream));
   stream->element = element;
   stream->log.object = GST_OBJECT_CAST (element);
+  g_queue_init (&stream->held);
   g_queue_init (&stream->events);
-  stream->position = GST_CLOCK_TIME_NONE;
 }
 
 static GstFlowReturn
@@ -79,7 +82,8 @@ gst_l1l2_stab_stream_close (GstL1L2StabStream * stream)
 gboolean
 gst_l1l2_stab_stream_is_empty (const GstL1L2StabStream * stream)
 {
-  return stream->n_in == stream->n_out;
+  return stream->n_in == stream->n_out
+      && g_queue_is_empty ((GQueue *) & stream->events);
 }
 
 static void
@@ -87,6 +91,8 @@ held_frame_free (gpointer data)
 {
   HeldFrame *held = data;
 
+  if (held->queue)
+    g_queue_unlink (held->queue, &held->link);
   if (held->pixels.buffer)
     gst_video_frame_unmap (&held->pixels);
   gst_buffer_unref (held->buffer);
@@ -168,7 +174,8 @@ gst_l1l2_stab_stream_set_live (GstL1L2StabStream * stream, gdouble lambda,
 }
 
 GstFlowReturn
-gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer)
+gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer,
+    GstClockTime arrival)
 {
   L1L2StabFrame frame = { 0 };
   L1L2StabResult result;
@@ -188,10 +195,56 @@ gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer)
   result = l1l2stab_push (stream->stab, &frame);
   if (result == L1L2STAB_OK) {
     stream->n_in++;
+    held->arrival = arrival;
+    held->link.data = held;
+    held->queue = &stream->held;
+    g_queue_push_tail_link (held->queue, &held->link);
     return GST_FLOW_OK;
   }
   held_frame_free (held);
   return flow (stream, result == L1L2STAB_AGAIN ? L1L2STAB_ERR_STATE : result);
+}
+
+static gboolean
+has_been_held (const HeldFrame * held, GstClockTime limit, GstClockTime now,
+    GstClockTime position)
+{
+  const GstClockTime pts = GST_BUFFER_PTS (held->buffer);
+
+  if (GST_CLOCK_TIME_IS_VALID (now) && GST_CLOCK_TIME_IS_VALID (held->arrival)
+      && now >= held->arrival + limit)
+    return TRUE;
+  /* Backward, too: timestamps fall in a reverse playback. */
+  return GST_CLOCK_TIME_IS_VALID (position) && GST_CLOCK_TIME_IS_VALID (pts)
+      && ABS (GST_CLOCK_DIFF (pts, position)) >= (GstClockTimeDiff) limit;
+}
+
+GstFlowReturn
+gst_l1l2_stab_stream_hurry (GstL1L2StabStream * stream, GstClockTime limit,
+    GstClockTime now, GstClockTime position)
+{
+  gint n = 0;
+  GList *link;
+
+  for (link = stream->held.head; link
+      && has_been_held (link->data, limit, now, position); link = link->next)
+    n++;
+  if (n == 0)
+    return GST_FLOW_OK;
+  GST_LOG_OBJECT (stream->element, "%d of %u frames cannot wait for more", n,
+      stream->held.length);
+  return flow (stream, l1l2stab_hurry (stream->stab, n));
+}
+
+GstClockTime
+gst_l1l2_stab_stream_due_time (const GstL1L2StabStream * stream,
+    GstClockTime limit)
+{
+  const HeldFrame *oldest = g_queue_peek_head ((GQueue *) & stream->held);
+
+  if (!oldest || !GST_CLOCK_TIME_IS_VALID (oldest->arrival))
+    return GST_CLOCK_TIME_NONE;
+  return oldest->arrival + limit;
 }
 
 GstFlowReturn

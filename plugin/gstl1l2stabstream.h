@@ -22,8 +22,8 @@ typedef struct
   GstBufferPool *own_pool;      /* made when upstream's buffers are scarce */
   guint64 n_in;                 /* frames that came in ... */
   guint64 n_out;                /* ... and of these, went out or were dropped */
+  GQueue held;                  /* the frames that the library holds, oldest first */
   GQueue events;                /* that wait for frames, oldest first */
-  GstClockTime position;        /* after the last frame out, in its segment; under the object lock; NONE: none yet */
 } GstL1L2StabStream;
 
 void gst_l1l2_stab_stream_init (GstL1L2StabStream * stream,
@@ -37,15 +37,26 @@ gboolean gst_l1l2_stab_stream_open (GstL1L2StabStream * stream,
 /* Drops everything; fine on a closed stream. */
 void gst_l1l2_stab_stream_close (GstL1L2StabStream * stream);
 
+/* No frame and no event is held. */
 gboolean gst_l1l2_stab_stream_is_empty (const GstL1L2StabStream * stream);
 
 /* For the frames that are pushed from now on. */
 GstFlowReturn gst_l1l2_stab_stream_set_live (GstL1L2StabStream * stream,
     gdouble lambda, gdouble crop_ratio);
 
-/* Takes `buffer`. */
+/* Takes `buffer`, which came in at `arrival`, a running time; NONE: not known. */
 GstFlowReturn gst_l1l2_stab_stream_push (GstL1L2StabStream * stream,
-    GstBuffer * buffer);
+    GstBuffer * buffer, GstClockTime arrival);
+
+/* Makes the frames ready that have been held for `limit`, and those before them, whatever look-ahead they have. Time is
+ * counted from their arrival to `now`, a running time, and from their timestamp to `position`, which the input has come
+ * to; either may be NONE. */
+GstFlowReturn gst_l1l2_stab_stream_hurry (GstL1L2StabStream * stream,
+    GstClockTime limit, GstClockTime now, GstClockTime position);
+
+/* The running time at which a frame will have been held for `limit` since its arrival; NONE: never. */
+GstClockTime gst_l1l2_stab_stream_due_time (const GstL1L2StabStream * stream,
+    GstClockTime limit);
 
 /* *next: the buffer whose timestamps, flags and metas belong to the next frame out; owned by the stream until
  * render() or reset(). NULL: none is ready. */

@@ -63,6 +63,41 @@ GST_START_TEST (an_event_with_no_frame_before_it_passes_at_once)
 
 GST_END_TEST;
 
+GST_START_TEST (a_gap_stays_in_its_place_and_ends_no_window)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  GString *out;
+
+  stab_push_frames (h, 0, 3);
+  out = stab_record_new (h);
+  gst_harness_push_event (h, gst_event_new_gap (3 * FRAME_DURATION,
+          FRAME_DURATION));
+  fail_unless_equals_string (out->str, "");
+  stab_push_frames (h, 4, WINDOW - 1);
+  fail_unless_equals_string (out->str, "f0 f1 f2 gap ");
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (in_a_long_gap_the_frames_before_it_go)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  GString *out;
+
+  stab_push_frames (h, 0, 3);
+  out = stab_record_new (h);
+  gst_harness_push_event (h, gst_event_new_gap (3 * FRAME_DURATION,
+          6 * FRAME_DURATION));
+  fail_unless_equals_string (out->str, "f0 f1 ");
+  gst_harness_push_event (h, gst_event_new_gap (9 * FRAME_DURATION,
+          6 * FRAME_DURATION));
+  fail_unless_equals_string (out->str, "f0 f1 f2 gap gap ");
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (an_event_out_of_band_overtakes_the_frames)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
@@ -131,6 +166,8 @@ events_suite (void)
   tcase_add_test (tc, a_serialized_event_stays_before_its_frame);
   tcase_add_test (tc, an_event_after_the_last_frame_goes_before_the_end);
   tcase_add_test (tc, an_event_with_no_frame_before_it_passes_at_once);
+  tcase_add_test (tc, a_gap_stays_in_its_place_and_ends_no_window);
+  tcase_add_test (tc, in_a_long_gap_the_frames_before_it_go);
   tcase_add_test (tc, an_event_out_of_band_overtakes_the_frames);
   tcase_add_test (tc, a_tag_outlives_a_flush_and_a_custom_event_does_not);
   tcase_add_test (tc, quality_of_service_goes_upstream_and_drops_no_frame);

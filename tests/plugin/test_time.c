@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: MIT */
+/* No frame is held for longer than the reported latency, whether others come in or not. Time is a test clock's. */
+#include <gst/check/gsttestclock.h>
+
+#include "stabharness.h"
+
+#define WINDOW 8
+#define LATENCY (WINDOW * FRAME_DURATION)
+/* A frame leaves half a duration before its time is up. */
+#define LIMIT (LATENCY - FRAME_DURATION / 2)
+
+/* The source of a harness is live. */
+static GstHarness *
+live_harness_new (void)
+{
+  return stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+}
+
+static gboolean
+not_live (GstPad * pad, GstObject * parent, GstQuery * query)
+{
+  if (GST_QUERY_TYPE (query) != GST_QUERY_LATENCY)
+    return gst_pad_query_default (pad, parent, query);
+  gst_query_set_latency (query, FALSE, 0, GST_CLOCK_TIME_NONE);
+  return TRUE;
+}
+
+static GstHarness *
+file_harness_new (void)
+{
+  GstHarness *h = live_harness_new ();
+
+  gst_pad_set_query_function (h->srcpad, not_live);
+  return h;
+}
+
+static GstClockTime
+clock_time (GstHarness * h)
+{
+  GstTestClock *clock = gst_harness_get_testclock (h);
+  const GstClockTime now = gst_clock_get_time (GST_CLOCK (clock));
+
+  gst_object_unref (clock);
+  return now;
+}
+
+static GstBuffer *
+frame_at (GstHarness * h, GstClockTime pts, GstClockTime duration)
+{
+  GstBuffer *buffer = stab_frame_new (h, 0);
+
+  GST_BUFFER_PTS (buffer) = pts;
+  GST_BUFFER_DURATION (buffer) = duration;
+  return buffer;
+}
+
+/* The frame of this time comes in, at this time. */
+static void
+push_live (GstHarness * h, GstClockTime pts)
+{
+  gst_harness_set_time (h, pts);
+  fail_unless_equals_int (gst_harness_push (h, frame_at (h, pts,
+              FRAME_DURATION)), GST_FLOW_OK);
+}
+
+/* The frame of this time comes out, now, and not too late. */
+static void
+pull_in_time (GstHarness * h, GstClockTime pts)
+{
+  GstBuffer *buffer = gst_harness_pull (h);
+
+  fail_unless (buffer != NULL);
+  fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer), pts);
+  fail_unless (clock_time (h) <= pts + LATENCY);
+  gst_buffer_unref (buffer);
+}
+
+/* Waits are over, one after the other, up to this time: the first may be for a frame that has left since. */
+static void
+crank_to (GstHarness * h, GstClockTime time)
+{
+  do
+    fail_unless (gst_harness_crank_single_clock_wait (h));
+  while (clock_time (h) < time);
+}
+
+GST_START_TEST (frames_of_a_stalled_live_source_leave_by_the_clock)
+{
+  GstHarness *h = live_harness_new ();
+  guint i;
+
+  for (i = 0; i < 3; i++)
+    push_live (h, i * FRAME_DURATION);
+  for (i = 0; i < 3; i++) {
+    fail_unless_equals_int (gst_harness_buffers_in_queue (h), 0);
+    fail_unless (gst_harness_crank_single_clock_wait (h));
+    pull_in_time (h, i * FRAME_DURATION);
+    fail_unless_equals_uint64 (clock_time (h), i * FRAME_DURATION + LIMIT);
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (a_live_source_at_half_its_rate_is_in_time)
+{
+  const GstClockTime step = 2 * FRAME_DURATION;
+  GstHarness *h = live_harness_new ();
+  guint i;
+
+  for (i = 0; i < 4; i++)
+    push_live (h, i * step);
+  for (i = 4; i < 40; i++) {
+    fail_unless (gst_harness_crank_single_clock_wait (h));
+    pull_in_time (h, (i - 4) * step);
+    push_live (h, i * step);
+    fail_unless_equals_int (gst_harness_buffers_in_queue (h), 0);
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (a_live_source_with_a_gap_of_three_seconds_is_in_time)
+{
+  GstHarness *h = live_harness_new ();
+  const GstClockTime later = 20 * FRAME_DURATION + 3 * GST_SECOND;
+  guint i;
+
+  for (i = 0; i < 20; i++) {
+    push_live (h, i * FRAME_DURATION);
+    if (i >= WINDOW - 1)
+      pull_in_time (h, (i - (WINDOW - 1)) * FRAME_DURATION);
+  }
+  for (i = 20 - WINDOW + 1; i < 20; i++) {
+    crank_to (h, i * FRAME_DURATION + LIMIT);
+    pull_in_time (h, i * FRAME_DURATION);
+  }
+  for (i = 0; i < 20; i++) {
+    push_live (h, later + i * FRAME_DURATION);
+    if (i >= WINDOW - 1)
+      pull_in_time (h, later + (i - (WINDOW - 1)) * FRAME_DURATION);
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (a_live_source_in_time_is_never_hurried)
+{
+  GstHarness *h = live_harness_new ();
+  guint i;
+
+  for (i = 0; i < 4 * WINDOW; i++) {
+    push_live (h, i * FRAME_DURATION);
+    fail_unless_equals_int (gst_harness_buffers_in_queue (h),
+        i >= WINDOW - 1 ? 1 : 0);
+    if (i >= WINDOW - 1)
+      pull_in_time (h, (i - (WINDOW - 1)) * FRAME_DURATION);
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (what_waits_for_a_frame_leaves_with_it)
+{
+  GstHarness *h = live_harness_new ();
+  GString *out;
+
+  push_live (h, 0);
+  out = stab_record_new (h);
+  gst_harness_push_event (h, gst_event_new_tag (gst_tag_list_new (GST_TAG_TITLE,
+              "one", NULL)));
+  fail_unless_equals_string (out->str, "");
+  fail_unless (gst_harness_crank_single_clock_wait (h));
+  pull_in_time (h, 0);
+  push_live (h, LATENCY);
+  fail_unless_equals_string (out->str, "f0 tag ");
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+/* As a pipeline does: running time stands still. */
+GST_START_TEST (in_a_pause_no_time_goes_by)
+{
+  const GstClockTime pause = 10 * GST_SECOND;
+  GstHarness *h = live_harness_new ();
+
+  push_live (h, 0);
+  gst_element_set_state (h->element, GST_STATE_PAUSED);
+  gst_harness_set_time (h, pause);
+  fail_unless_equals_int (gst_harness_buffers_in_queue (h), 0);
+  gst_element_set_base_time (h->element, pause);
+  gst_element_set_state (h->element, GST_STATE_PLAYING);
+  fail_unless (gst_harness_crank_single_clock_wait (h));
+  gst_buffer_unref (gst_harness_pull (h));
+  fail_unless_equals_uint64 (clock_time (h), pause + LIMIT);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (a_flush_leaves_the_clock_nothing_to_let_go)
+{
+  GstHarness *h = live_harness_new ();
+  GstSegment segment;
+
+  push_live (h, 0);
+  gst_harness_push_event (h, gst_event_new_flush_start ());
+  gst_harness_push_event (h, gst_event_new_flush_stop (FALSE));
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  gst_harness_push_event (h, gst_event_new_segment (&segment));
+  push_live (h, FRAME_DURATION);
+  crank_to (h, FRAME_DURATION + LIMIT);
+  pull_in_time (h, FRAME_DURATION);
+  fail_unless_equals_int (gst_harness_buffers_in_queue (h), 0);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (stopping_ends_the_wait)
+{
+  GstHarness *h = live_harness_new ();
+  guint i;
+
+  for (i = 0; i < 20; i++) {
+    push_live (h, i * FRAME_DURATION);
+    gst_element_set_state (h->element, GST_STATE_NULL);
+    gst_element_set_state (h->element, GST_STATE_PLAYING);
+    gst_harness_push_event (h, gst_event_new_stream_start ("again"));
+    gst_harness_set_src_caps_str (h, SMALL_CAPS);
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (the_clock_pushes_nothing_of_a_source_that_is_not_live)
+{
+  GstHarness *h = file_harness_new ();
+  GstTestClock *clock = gst_harness_get_testclock (h);
+
+  stab_push_frames (h, 0, 3);
+  gst_harness_set_time (h, 10 * LATENCY);
+  stab_push_frames (h, 3, 1);
+  fail_unless_equals_int (gst_test_clock_peek_id_count (clock), 0);
+  fail_unless_equals_int (gst_harness_buffers_in_queue (h), 0);
+  gst_object_unref (clock);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+/* The next frame's index after 0, 1, 2, and how many of these cannot wait then: those 8 and more frames before it. */
+static const struct
+{
+  guint index, n_out;
+} jumps[] = {
+  {7, 0}, {8, 1}, {9, 2}, {10, 3}, {500, 3}
+};
+
+GST_START_TEST (a_jump_of_the_timestamps_lets_the_frames_before_it_go)
+{
+  GstHarness *h = file_harness_new ();
+
+  stab_push_frames (h, 0, 3);
+  stab_push_frames (h, jumps[__i__].index, 1);
+  stab_pull_frames (h, 0, jumps[__i__].n_out);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (frames_of_a_varying_rate_keep_their_times_and_wait_no_longer)
+{
+  const guint steps[] = { 40, 120, 40, 7, 33, 400, 40, 61, 90, 25 };
+  GstHarness *h = file_harness_new ();
+  GstClockTime times[60], durations[60], in = 0;
+  guint n_out = 0, i;
+
+  for (i = 0; i < 60; i++) {
+    GstBuffer *buffer;
+
+    times[i] = in;
+    durations[i] = steps[i % 10] * GST_MSECOND;
+    in += durations[i];
+    gst_harness_push (h, frame_at (h, times[i], durations[i]));
+    while ((buffer = gst_harness_try_pull (h)) != NULL) {
+      fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer), times[n_out]);
+      fail_unless_equals_uint64 (GST_BUFFER_DURATION (buffer),
+          durations[n_out]);
+      gst_buffer_unref (buffer);
+      n_out++;
+    }
+    fail_unless (times[i] - times[n_out] < LATENCY);
+  }
+  gst_harness_push_event (h, gst_event_new_eos ());
+  fail_unless_equals_int (n_out + gst_harness_buffers_in_queue (h), 60);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+static Suite *
+time_suite (void)
+{
+  Suite *s = suite_create ("time");
+  TCase *tc = tcase_create ("time");
+
+  suite_add_tcase (s, tc);
+  tcase_add_test (tc, frames_of_a_stalled_live_source_leave_by_the_clock);
+  tcase_add_test (tc, a_live_source_at_half_its_rate_is_in_time);
+  tcase_add_test (tc, a_live_source_with_a_gap_of_three_seconds_is_in_time);
+  tcase_add_test (tc, a_live_source_in_time_is_never_hurried);
+  tcase_add_test (tc, what_waits_for_a_frame_leaves_with_it);
+  tcase_add_test (tc, in_a_pause_no_time_goes_by);
+  tcase_add_test (tc, a_flush_leaves_the_clock_nothing_to_let_go);
+  tcase_add_test (tc, stopping_ends_the_wait);
+  tcase_add_test (tc, the_clock_pushes_nothing_of_a_source_that_is_not_live);
+  tcase_add_loop_test (tc,
+      a_jump_of_the_timestamps_lets_the_frames_before_it_go, 0,
+      G_N_ELEMENTS (jumps));
+  tcase_add_test (tc,
+      frames_of_a_varying_rate_keep_their_times_and_wait_no_longer);
+  return s;
+}
+
+GST_CHECK_MAIN (time);

@@ -33,7 +33,7 @@ struct L1L2Motion {
     L1L2Pixel point[MAX_POINTS], moved[MAX_POINTS];
     int age[MAX_POINTS];    /* frames that a point has moved with the camera */
     L1L2Pair pair[MAX_POINTS];
-    double votes[MAX_POINTS];
+    double votes[MAX_POINTS], weights[MAX_POINTS];
     bool ok[MAX_POINTS], inlier[MAX_POINTS];
     int points;             /* in `point`, in the current picture */
     int since_selection;    /* frames */
@@ -183,9 +183,10 @@ static void start_shot(L1L2Motion *m, L1L2MotionResult *out, const char *how)
 static void fit(L1L2Motion *m, L1L2MotionResult *out)
 {
     const int count = m->points;
-    l1l2_votes_cast(&m->voters, m->pair, m->age, count, m->votes);
-    L1L2Rung rung = l1l2_ladder_measure(&m->ladder, &m->voters, m->pair, m->votes, count,
-                                        m->since_selection == 1, &m->rng, m->inlier);
+    l1l2_votes_cast(&m->voters, m->pair, m->age, count, m->votes, m->weights);
+    const L1L2Say say = {m->votes, m->weights};
+    L1L2Rung rung = l1l2_ladder_measure(&m->ladder, &m->voters, m->pair, say, count, m->since_selection == 1, &m->rng,
+                                        m->inlier);
     const bool measured = rung.model != L1L2STAB_MODEL_NONE;
     /* Nothing could be measured: is it because another shot begins? A picture that shows nothing is none; what comes
      * after it is compared with the one before. */

@@ -24,6 +24,9 @@ static const double prediction_fade = 0.8;
 /* Another motion is looked for among outliers that have this part of the votes. */
 static const double min_rival_share = 0.1;
 static const int min_rival_inliers = 8;
+/* A motion that does not rise above what the tracks' noise makes of it is none: the dark would shake. Below the first,
+ * in thresholds, noise is not in question (200 good tracks: 0.01). */
+static const double clear_error = 0.035, significant = 3.0, most_unseen = 3.0;
 /* Half a threshold beyond the inliers it is another depth of the same scene, and no harm to follow; from here on, px of
  * thresholds at the corners, it is another thing. */
 static const double far_apart = 6.0;
@@ -59,6 +62,34 @@ static double spread(const L1L2Mat *F, const L1L2Pair *pairs, const bool *inlier
             inliers++;
         }
     return sqrt(sum / inliers);
+}
+
+/* How far off the corners are to be expected, from the scatter of the inliers about F. Of what noise scatters beyond the
+ * threshold nothing is seen, so few inliers mean more of it, if only up to a point: there are other outliers. */
+static double expected_error(const L1L2Ladder *l, const L1L2Votes *v, const L1L2Rung *r, const L1L2Pair *pairs,
+                             const bool *inlier, int count)
+{
+    const double n = r->inliers, deviation = spread(&r->F, pairs, inlier, count) / sqrt(2.0);
+    double radius2 = 0.0;
+    for (int i = 0; i < count; i++)
+        if (inlier[i])
+            radius2 += (pairs[i].from.x * pairs[i].from.x + pairs[i].from.y * pairs[i].from.y) / n;
+    const double corner2 = v->half_w * v->half_w + v->half_h * v->half_h;
+    const double lever = r->model == L1L2STAB_MODEL_TRANSLATION || radius2 == 0.0 ? 1.0 : 1.0 + corner2 / radius2;
+    const double unseen = fmin(count * count / (n * n), most_unseen);
+    return fmax(0.0, deviation * sqrt(lever / n) * unseen - clear_error * l->threshold);
+}
+
+/* F as far as it is significant: Wiener's gain, over the identity. */
+static L1L2Mat significant_part(const L1L2Mat *F, double error, const L1L2Votes *v)
+{
+    const L1L2Mat identity = l1l2_mat_identity();
+    const double size = l1l2_mat_corner_distance(F, &identity, v->half_w, v->half_h), noise = significant * error;
+    const double gain = noise > 0.0 ? fmax(0.0, 1.0 - noise * noise / (size * size + 1e-300)) : 1.0;
+    L1L2Mat part = *F;
+    for (int i = 0; i < 6 && gain < 1.0; i++)
+        part.m[i] = identity.m[i] + gain * (F->m[i] - identity.m[i]);
+    return part;
 }
 
 /* Does the rung bear? */
@@ -105,7 +136,7 @@ static double rival_votes(const L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat
     for (int i = 0; i < count; i++)
         if (!inlier[i])
             other[others] = pairs[i], other_votes[others++] = votes[i];
-    const int inliers = l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, other, other_votes, others, l->threshold, rng,
+    const int inliers = l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, other, (L1L2Say){other_votes, NULL}, others, l->threshold, rng,
                                     agreeing, &rival);
     if (inliers < min_rival_inliers || spread(&rival, other, agreeing, others) > max_spread * l->threshold)
         return 0.0;
@@ -128,20 +159,23 @@ static double quality(L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat *F, const
 
 static const L1L2StabModel model_of[] = {L1L2STAB_MODEL_TRANSLATION, L1L2STAB_MODEL_SIMILARITY, L1L2STAB_MODEL_AFFINE};
 
-L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *pairs, const double *votes, int count,
+L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *pairs, L1L2Say say, int count,
                              bool selected, L1L2Rng *rng, bool *inlier)
 {
     L1L2Rung r = {.model = L1L2STAB_MODEL_NONE, .F = l1l2_mat_identity()};
     for (int rung = (int)l->wanted; rung >= L1L2STAB_MOTION_MODEL_TRANSLATION; rung--) {
         const L1L2StabMotionModel model = (L1L2StabMotionModel)rung;
         const double threshold = (rung == L1L2STAB_MOTION_MODEL_TRANSLATION ? wider : 1.0) * l->threshold;
-        r.inliers = l1l2_ransac(model, pairs, votes, count, threshold, rng, inlier, &r.F);
+        r.inliers = l1l2_ransac(model, pairs, say, count, threshold, rng, inlier, &r.F);
         if (!stands(l, model, v, pairs, count, inlier, &r) || !may_rise(l, model, r.inliers))
             continue;
-        r.quality = quality(l, v, &r.F, pairs, votes, count, selected, rng, inlier);
+        r.quality = quality(l, v, &r.F, pairs, say.votes, count, selected, rng, inlier);
         if (r.quality < min_quality)
             break;
         r.model = model_of[rung];
+        const double error = expected_error(l, v, &r, pairs, inlier, count);
+        r.quality /= 1.0 + error / l->threshold;
+        r.F = significant_part(&r.F, error, v);
         l->rung = model;
         l->last = r.F;
         l->lost = 0;

@@ -36,7 +36,7 @@ typedef struct L1L2Rung {
 void l1l2_ladder_reset(L1L2Ladder *l);
 
 /* selected: points were chosen anew for this frame. inlier: `count` flags out. */
-L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *pairs, const double *votes, int count,
+L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *pairs, L1L2Say say, int count,
                              bool selected, L1L2Rng *rng, bool *inlier);
 
 /* The motion where nothing was measured: the one before it, fading, and then none. */

@@ -36,7 +36,8 @@ void l1l2_votes_reset(L1L2Votes *v)
         v->trust[cell] = 1.0;
 }
 
-void l1l2_votes_cast(const L1L2Votes *v, const L1L2Pair *pairs, const int *age, int count, double *votes)
+void l1l2_votes_cast(const L1L2Votes *v, const L1L2Pair *pairs, const int *age, int count, double *votes,
+                     double *weights)
 {
     int population[CELLS] = {0};
     for (int i = 0; i < count; i++)
@@ -45,7 +46,8 @@ void l1l2_votes_cast(const L1L2Votes *v, const L1L2Pair *pairs, const int *age, 
         const int cell = cell_of(v, pairs[i].from);
         const double seniority = 1.0 + (age_factor - 1.0) * fmin(age[i], grown_up) / grown_up;
         const double trust = least_trust + (1.0 - least_trust) * v->trust[cell];
-        votes[i] = seniority * trust * (is_outer(cell) ? outer_factor : 1.0) / population[cell];
+        weights[i] = seniority * trust;
+        votes[i] = weights[i] * (is_outer(cell) ? outer_factor : 1.0) / population[cell];
     }
 }
 

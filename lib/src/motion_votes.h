@@ -24,8 +24,10 @@ typedef struct L1L2Votes {
 /* Forget: all cells are alike. */
 void l1l2_votes_reset(L1L2Votes *v);
 
-/* votes: `count` out, > 0. age[i]: frames that track i has moved with the camera. */
-void l1l2_votes_cast(const L1L2Votes *v, const L1L2Pair *pairs, const int *age, int count, double *votes);
+/* votes, weights: `count` out each, > 0; the weights are of time alone. age[i]: frames that track i has moved with the
+ * camera. */
+void l1l2_votes_cast(const L1L2Votes *v, const L1L2Pair *pairs, const int *age, int count, double *votes,
+                     double *weights);
 
 /* Which of them moved with the camera this time. */
 void l1l2_votes_learn(L1L2Votes *v, const L1L2Pair *pairs, const bool *inlier, int count);

@@ -15,7 +15,7 @@ typedef struct Problem {
     L1L2StabMotionModel model;
     int size; /* pairs in a smallest set */
     const L1L2Pair *pairs;
-    const double *votes;
+    L1L2Say say;
     int count;
     double threshold;
     L1L2Rng *rng;
@@ -38,6 +38,11 @@ static double squared_residual(const L1L2Mat *fit, const L1L2Pair *pair)
     return dx * dx + dy * dy;
 }
 
+static double share(const double *of, int i)
+{
+    return of ? of[i] : 1.0;
+}
+
 /* Returns the inliers' votes. */
 static double mark_inliers(const Problem *p, const L1L2Mat *fit, bool *inlier, int *inliers)
 {
@@ -47,7 +52,7 @@ static double mark_inliers(const Problem *p, const L1L2Mat *fit, bool *inlier, i
         inlier[i] = squared_residual(fit, &p->pairs[i]) <= p->threshold * p->threshold;
         *inliers += inlier[i];
         if (inlier[i])
-            votes += p->votes ? p->votes[i] : 1.0;
+            votes += share(p->say.votes, i);
     }
     return votes;
 }
@@ -69,7 +74,7 @@ static bool refit(const Problem *p, const bool *inlier, L1L2Mat *fit)
     double weights[L1L2_RANSAC_MAX_PAIRS];
     for (int i = 0; i < p->count; i++) {
         const double r2 = squared_residual(fit, &p->pairs[i]) / (4.0 * p->threshold * p->threshold);
-        weights[i] = inlier[i] ? (1.0 - r2) * (1.0 - r2) * (p->votes ? p->votes[i] : 1.0) : 0.0;
+        weights[i] = inlier[i] ? (1.0 - r2) * (1.0 - r2) * share(p->say.weights, i) : 0.0;
     }
     return l1l2_fit(p->model, p->pairs, weights, p->count, fit);
 }
@@ -101,14 +106,14 @@ static int settle(const Problem *p, bool *inlier, L1L2Mat *fit)
     return inliers >= p->size ? inliers : 0;
 }
 
-int l1l2_ransac(L1L2StabMotionModel model, const L1L2Pair *pairs, const double *votes, int count, double threshold,
+int l1l2_ransac(L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2Say say, int count, double threshold,
                 L1L2Rng *rng, bool *inlier, L1L2Mat *fit)
 {
-    const Problem p = {model, l1l2_fit_size(model), pairs, votes, count, threshold, rng};
+    const Problem p = {model, l1l2_fit_size(model), pairs, say, count, threshold, rng};
     double most = 0.0, all = 0.0;
     int inliers = 0;
     for (int i = 0; i < count; i++)
-        all += votes ? votes[i] : 1.0;
+        all += share(say.votes, i);
     *fit = l1l2_mat_identity();
     for (int drawn = 0, draws = max_draws; count >= p.size && drawn < draws; drawn++) {
         L1L2Mat candidate;

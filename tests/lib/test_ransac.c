@@ -61,9 +61,11 @@ static double error_of(const L1L2Mat *fit, const L1L2Mat *truth)
     return l1l2_mat_corner_distance(fit, truth, 0.436, 0.245);
 }
 
+static const L1L2Say none_said = {NULL, NULL};
+
 static int ransac(int model, int count, L1L2Mat *fit)
 {
-    return l1l2_ransac((L1L2StabMotionModel)model, pairs, NULL, count, threshold, &rng, inlier, fit);
+    return l1l2_ransac((L1L2StabMotionModel)model, pairs, none_said, count, threshold, &rng, inlier, fit);
 }
 
 static L1L2Mat some_similarity(void)
@@ -168,9 +170,9 @@ START_TEST(votes_decide_which_of_two_motions_it_is)
         if (i < COUNT / 4)
             pairs[i].to = l1l2_mat_apply(&small, pairs[i].from);
     }
-    l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, votes, COUNT, threshold, &rng, inlier, &fit);
+    l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, (L1L2Say){votes, NULL}, COUNT, threshold, &rng, inlier, &fit);
     ck_assert_near(error_of(&fit, &small), 0.0, 0.3 * threshold);
-    l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, NULL, COUNT, threshold, &rng, inlier, &fit);
+    l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, none_said, COUNT, threshold, &rng, inlier, &fit);
     ck_assert_near(error_of(&fit, &large), 0.0, 0.3 * threshold);
 }
 END_TEST
@@ -185,7 +187,7 @@ START_TEST(the_unit_does_not_matter)
     for (int i = 0; i < COUNT; i++)
         pairs[i] = (L1L2Pair){{pairs[i].from.x * 1024.0, pairs[i].from.y * 1024.0},
                               {pairs[i].to.x * 1024.0, pairs[i].to.y * 1024.0}};
-    const int again_inliers = l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, NULL, COUNT, threshold * 1024.0,
+    const int again_inliers = l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, none_said, COUNT, threshold * 1024.0,
                                           &again, inlier, &fit_px);
     ck_assert_int_eq(again_inliers, inliers);
     const L1L2Mat back = l1l2_mat_rescale(fit_px, 1.0 / 1024.0);
@@ -201,7 +203,7 @@ START_TEST(equal_seeds_give_equal_bits)
     make_pairs(&truth, 0.3 * threshold, 0.5);
     for (int i = 0; i < 2; i++) {
         L1L2Rng seeded = l1l2_rng_seeded(9);
-        l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, NULL, COUNT, threshold, &seeded, flags[i], &fit[i]);
+        l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, none_said, COUNT, threshold, &seeded, flags[i], &fit[i]);
     }
     ck_assert_mem_eq(&fit[0], &fit[1], sizeof fit[0]);
     ck_assert_mem_eq(flags[0], flags[1], sizeof flags[0]);
@@ -243,7 +245,7 @@ START_TEST(pairs_that_are_not_finite_are_outliers)
     ck_assert_int_eq(ransac(SIMILARITY, COUNT, &fit), COUNT - (COUNT + 2) / 3);
     ck_assert_near(error_of(&fit, &truth), 0.0, 1e-14);
     L1L2Pair none = {{0.0, 0.0}, {NAN, 0.0}};
-    ck_assert_int_eq(l1l2_ransac(L1L2STAB_MOTION_MODEL_TRANSLATION, &none, NULL, 1, threshold, &rng, inlier, &fit),
+    ck_assert_int_eq(l1l2_ransac(L1L2STAB_MOTION_MODEL_TRANSLATION, &none, none_said, 1, threshold, &rng, inlier, &fit),
                      0);
     ck_assert(l1l2_mat_is_identity(&fit));
 }

@@ -1,39 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/**
- * SECTION:element-l1l2stab
- * @title: l1l2stab
- * @short_description: steadies shaken video while it plays
- *
- * l1l2stab follows the motion of the camera, smooths its path, and renders
- * each frame as the smooth camera would have seen it. It looks at a window of
- * frames together and therefore holds them back: the latency is #l1l2stab:window
- * frames. After them, one frame comes out for each frame that comes in, with
- * its timestamps, flags and metas.
- *
- * The method is that of Qu and Song, "Video stabilization with L1-L2
- * optimization", ICIP 2013.
- *
- * #l1l2stab:lambda and #l1l2stab:crop-ratio may be changed, or controlled by
- * stream time, while the stream runs: they apply to the frames that come in
- * from then on; the crop moves by at most 0.005 a frame. The other properties
- * take effect with the next caps, or when the element is started again; so does
- * the size that crop-ratio gives with output-size=crop. Interlaced video has to
- * be deinterlaced first.
- *
- * ## Example launch lines
- * |[
- * gst-launch-1.0 filesrc location=in.mp4 ! decodebin ! l1l2stab ! x264enc ! mp4mux ! filesink location=out.mp4
- * ]| Steadies a file that has no sound.
- * |[
- * gst-launch-1.0 filesrc location=in.mp4 ! decodebin name=in \
- *   in. ! queue ! l1l2stab ! x264enc ! queue ! mp4mux name=out ! filesink location=out.mp4 \
- *   in. ! queue max-size-time=0 max-size-bytes=0 max-size-buffers=0 ! audioconvert ! avenc_aac ! out.
- * ]| The same with sound. The queue of the other branch must have room for the
- * whole window: by default a queue ends at one second, and the pipeline may stall.
- * |[
- * gst-launch-1.0 v4l2src ! videoconvert ! l1l2stab window=30 ! videoconvert ! autovideosink
- * ]| A camera, with a delay of one second at 30 frames a second.
- */
+/* The methods of the base class: who does what is in the files next to this one. What it is for is told in plugin.c. */
 #include "gstl1l2stab.h"
 
 #include <gst/video/video.h>
@@ -43,7 +9,9 @@
 #include "gstl1l2stabcarry.h"
 #include "gstl1l2stabglue.h"
 #include "gstl1l2stabinput.h"
+#include "gstl1l2stabmeta.h"
 #include "gstl1l2staboutput.h"
+#include "gstl1l2stabreport.h"
 #include "gstl1l2stabsettings.h"
 
 GST_DEBUG_CATEGORY (gst_l1l2_stab_debug);
@@ -68,17 +36,28 @@ static GstFlowReturn
 gst_l1l2_stab_transform (GstBaseTransform * trans, GstBuffer * input,
     GstBuffer * output)
 {
-  GstL1L2StabStream *stream = &GST_L1L2_STAB (trans)->output.stream;
+  GstL1L2Stab *self = GST_L1L2_STAB (trans);
+  GstL1L2StabStream *stream = &self->output.stream;
   L1L2StabInfo info;
   GstL1L2StabMap map;
   GstFlowReturn ret;
 
+  gst_l1l2_stab_stream_set_bypass (stream,
+      gst_l1l2_stab_settings_sample_bypass (&self->settings,
+          gst_l1l2_stab_glue_stream_time (&trans->segment, input)));
   ret = gst_l1l2_stab_stream_render (stream, output, &info);
-  if (ret == GST_FLOW_OK) {
-    gst_l1l2_stab_map_init (&map, &info, &stream->in_info, &stream->out_info);
-    gst_l1l2_stab_carry_regions (output, &map, &stream->out_info);
-  }
-  return ret;
+  if (ret != GST_FLOW_OK)
+    return ret;
+
+  gst_l1l2_stab_map_init (&map, &info, &stream->in_info, &stream->out_info);
+  gst_l1l2_stab_carry_regions (output, &map, &stream->out_info);
+  gst_l1l2_stab_report_out (&stream->report, output, &info, &map,
+      &stream->in_info, &stream->out_info);
+  if (gst_l1l2_stab_settings_post_messages (&self->settings))
+    gst_element_post_message (GST_ELEMENT_CAST (self),
+        gst_l1l2_stab_report_message (&stream->report, output, &info,
+            &trans->segment));
+  return GST_FLOW_OK;
 }
 
 /* The base class is left nothing to push. */
@@ -101,6 +80,8 @@ gst_l1l2_stab_submit_input_buffer (GstBaseTransform * trans,
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
   GstFlowReturn ret;
 
+  /* A dropped input would be a hole in the camera's path, whoever wishes it. */
+  gst_base_transform_set_qos_enabled (trans, FALSE);
   /* The base class renegotiates where it has to, and leaves the frame in queued_buf. */
   ret = GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)
       ->submit_input_buffer (trans, is_discont, input);
@@ -121,6 +102,16 @@ gst_l1l2_stab_sink_event (GstBaseTransform * trans, GstEvent * event)
     gst_l1l2_stab_settings_adopt (&self->settings,
         GST_BASE_TRANSFORM_SINK_PAD (trans), event);
   return GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)->sink_event
+      (trans, event);
+}
+
+static gboolean
+gst_l1l2_stab_src_event (GstBaseTransform * trans, GstEvent * event)
+{
+  if (GST_EVENT_TYPE (event) == GST_EVENT_NAVIGATION)
+    event = gst_l1l2_stab_report_point_at_source (&GST_L1L2_STAB
+        (trans)->output.stream.report, event);
+  return GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)->src_event
       (trans, event);
 }
 
@@ -235,9 +226,8 @@ gst_l1l2_stab_start (GstBaseTransform * trans)
     return FALSE;
   }
 
-  /* A dropped input would be a hole in the camera's path. */
-  gst_base_transform_set_qos_enabled (trans, FALSE);
   gst_l1l2_stab_latency_set (&self->output.latency, settings.window, NULL);
+  gst_l1l2_stab_report_start (&self->output.stream.report);
   return TRUE;
 }
 
@@ -249,6 +239,20 @@ gst_l1l2_stab_stop (GstBaseTransform * trans)
   gst_l1l2_stab_output_stop (&self->output);
   gst_l1l2_stab_settings_release (&self->settings);
   return TRUE;
+}
+
+static GstStructure *
+gst_l1l2_stab_get_stats (GstL1L2Stab * self)
+{
+  L1L2StabConfig settings;
+  GstClockTime latency;
+
+  gst_l1l2_stab_settings_in_use (&self->settings, &settings);
+  GST_OBJECT_LOCK (self);
+  latency = self->output.latency.latency;
+  GST_OBJECT_UNLOCK (self);
+  return gst_l1l2_stab_report_stats (&self->output.stream.report,
+      settings.window, latency);
 }
 
 static void
@@ -264,15 +268,21 @@ static void
 gst_l1l2_stab_get_property (GObject * object, guint id, GValue * value,
     GParamSpec * pspec)
 {
-  if (!gst_l1l2_stab_settings_get (&GST_L1L2_STAB (object)->settings, id,
-          value))
+  GstL1L2Stab *self = GST_L1L2_STAB (object);
+
+  if (id == GST_L1L2_STAB_PROP_STATS)
+    g_value_take_boxed (value, gst_l1l2_stab_get_stats (self));
+  else if (!gst_l1l2_stab_settings_get (&self->settings, id, value))
     G_OBJECT_WARN_INVALID_PROPERTY_ID (object, id, pspec);
 }
 
 static void
 gst_l1l2_stab_finalize (GObject * object)
 {
-  gst_l1l2_stab_output_clear (&GST_L1L2_STAB (object)->output);
+  GstL1L2Stab *self = GST_L1L2_STAB (object);
+
+  gst_l1l2_stab_output_clear (&self->output);
+  gst_l1l2_stab_settings_clear (&self->settings);
   G_OBJECT_CLASS (gst_l1l2_stab_parent_class)->finalize (object);
 }
 
@@ -290,6 +300,7 @@ gst_l1l2_stab_class_init (GstL1L2StabClass * klass)
   object_class->get_property = gst_l1l2_stab_get_property;
   object_class->finalize = gst_l1l2_stab_finalize;
   gst_l1l2_stab_settings_install (object_class);
+  gst_l1l2_stab_meta_register ();
 
   gst_l1l2_stab_caps_add_templates (element_class);
   gst_element_class_set_static_metadata (element_class, "Video stabilizer",
@@ -304,6 +315,7 @@ gst_l1l2_stab_class_init (GstL1L2StabClass * klass)
       GST_DEBUG_FUNCPTR (gst_l1l2_stab_transform_caps);
   trans_class->set_caps = GST_DEBUG_FUNCPTR (gst_l1l2_stab_set_caps);
   trans_class->sink_event = GST_DEBUG_FUNCPTR (gst_l1l2_stab_sink_event);
+  trans_class->src_event = GST_DEBUG_FUNCPTR (gst_l1l2_stab_src_event);
   trans_class->query = GST_DEBUG_FUNCPTR (gst_l1l2_stab_query);
   trans_class->propose_allocation =
       GST_DEBUG_FUNCPTR (gst_l1l2_stab_propose_allocation);
@@ -328,6 +340,7 @@ gst_l1l2_stab_init (GstL1L2Stab * self)
 
   gst_base_transform_set_passthrough (trans, FALSE);
   gst_base_transform_set_in_place (trans, FALSE);
+  gst_base_transform_set_qos_enabled (trans, FALSE);
   /* What is neutral stays neutral: the flag of such a frame is kept. */
   gst_base_transform_set_gap_aware (trans, TRUE);
   /* With output-size=crop, downstream's size is not the one to ask upstream for. */

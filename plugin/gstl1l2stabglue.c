@@ -129,6 +129,15 @@ gst_l1l2_stab_glue_config (L1L2StabConfig * config, const GstVideoInfo * info)
   }
 }
 
+GstClockTime
+gst_l1l2_stab_glue_stream_time (const GstSegment * segment, GstBuffer * frame)
+{
+  if (segment->format != GST_FORMAT_TIME)
+    return GST_CLOCK_TIME_NONE;
+  return gst_segment_to_stream_time (segment, GST_FORMAT_TIME,
+      GST_BUFFER_PTS (frame));
+}
+
 void
 gst_l1l2_stab_glue_planes (L1L2StabFrame * frame, const GstVideoFrame * video)
 {

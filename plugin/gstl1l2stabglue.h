@@ -32,6 +32,10 @@ gboolean gst_l1l2_stab_glue_parse_caps (GstVideoInfo * info,
 void gst_l1l2_stab_glue_config (L1L2StabConfig * config,
     const GstVideoInfo * info);
 
+/* Where the frame is in the stream, by its segment; NONE where that is not told. */
+GstClockTime gst_l1l2_stab_glue_stream_time (const GstSegment * segment,
+    GstBuffer * frame);
+
 /* The planes of a mapped frame. */
 void gst_l1l2_stab_glue_planes (L1L2StabFrame * frame,
     const GstVideoFrame * video);

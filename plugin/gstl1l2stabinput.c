@@ -7,8 +7,9 @@ apply_live_settings (GstL1L2StabOutput * output,
 {
   gdouble lambda, crop_ratio;
 
-  gst_l1l2_stab_settings_sample (settings, &output->trans->segment, frame,
-      &lambda, &crop_ratio);
+  gst_l1l2_stab_settings_sample (settings,
+      gst_l1l2_stab_glue_stream_time (&output->trans->segment, frame), &lambda,
+      &crop_ratio);
   return gst_l1l2_stab_stream_set_live (&output->stream, lambda, crop_ratio);
 }
 

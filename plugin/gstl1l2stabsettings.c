@@ -1,94 +1,93 @@
 /* SPDX-License-Identifier: MIT */
 #include "gstl1l2stabsettings.h"
 
+#include "gstl1l2stabenums.h"
+
 enum
 {
   PROP_0,
+  PROP_STATS = GST_L1L2_STAB_PROP_STATS,
   PROP_LAMBDA,
+  PROP_CROP_RATIO,
+  PROP_BYPASS,
   PROP_WINDOW,
   PROP_OVERLAP,
-  PROP_CROP_RATIO,
   PROP_JOIN,
+  PROP_MOTION_MODEL,
   PROP_INTERPOLATION,
   PROP_OUTPUT_SIZE,
   PROP_THREADS,
+  PROP_MOTION_IN,
+  PROP_MOTION_OUT,
+  PROP_POST_MESSAGES,
 };
 
-/* A change while the stream runs waits for the next caps: hence READY. */
+/* A change while the stream runs waits for the next caps, or, of a file, for the next start: hence READY. */
 #define SETTING_FLAGS \
   (G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY)
 
-/* Each frame samples these. */
+/* Each frame looks at these ... */
 #define LIVE_FLAGS \
-  (G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_CONTROLLABLE \
-      | GST_PARAM_MUTABLE_PLAYING)
+  (G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING)
 
-#define GST_TYPE_L1L2_STAB_JOIN (gst_l1l2_stab_join_get_type ())
-static GType
-gst_l1l2_stab_join_get_type (void)
+/* ... and at these, by its stream time. */
+#define CONTROLLABLE_FLAGS (LIVE_FLAGS | GST_PARAM_CONTROLLABLE)
+
+static void
+install_live (GObjectClass * klass, const L1L2StabConfig * defaults)
 {
-  static gsize type = 0;
-  static const GEnumValue values[] = {
-    {L1L2STAB_JOIN_CONTINUOUS,
-          "The next window goes on from the frames already given out",
-        "continuous"},
-    {L1L2STAB_JOIN_BLEND,
-        "The paths of two windows are averaged where they overlap", "blend"},
-    {0, NULL, NULL}
-  };
-
-  if (g_once_init_enter (&type))
-    g_once_init_leave (&type, g_enum_register_static ("GstL1L2StabJoin",
-            values));
-  return type;
-}
-
-#define GST_TYPE_L1L2_STAB_INTERPOLATION \
-  (gst_l1l2_stab_interpolation_get_type ())
-static GType
-gst_l1l2_stab_interpolation_get_type (void)
-{
-  static gsize type = 0;
-  static const GEnumValue values[] = {
-    {L1L2STAB_INTERPOLATION_BILINEAR, "2x2 pixels: fast and soft", "bilinear"},
-    {L1L2STAB_INTERPOLATION_BICUBIC, "4x4 pixels", "bicubic"},
-    {L1L2STAB_INTERPOLATION_LANCZOS, "6x6 pixels: sharp and slow", "lanczos"},
-    {0, NULL, NULL}
-  };
-
-  if (g_once_init_enter (&type))
-    g_once_init_leave (&type,
-        g_enum_register_static ("GstL1L2StabInterpolation", values));
-  return type;
-}
-
-#define GST_TYPE_L1L2_STAB_OUTPUT_SIZE (gst_l1l2_stab_output_size_get_type ())
-static GType
-gst_l1l2_stab_output_size_get_type (void)
-{
-  static gsize type = 0;
-  static const GEnumValue values[] = {
-    {L1L2STAB_OUTPUT_SIZE_INPUT,
-        "As the input: the crop window is zoomed to fill it", "input"},
-    {L1L2STAB_OUTPUT_SIZE_CROP,
-        "The crop window's own size, in even numbers: no zoom", "crop"},
-    {0, NULL, NULL}
-  };
-
-  if (g_once_init_enter (&type))
-    g_once_init_leave (&type,
-        g_enum_register_static ("GstL1L2StabOutputSize", values));
-  return type;
+  g_object_class_install_property (klass, PROP_LAMBDA,
+      g_param_spec_double ("lambda", "Lambda",
+          "Pull towards the shaken path, per frame diagonal: 0.1 smooths most, "
+          "2 follows the shake; means the same at every size and frame rate. "
+          "A change applies to the frames that come in from then on",
+          0, 1000, defaults->lambda, CONTROLLABLE_FLAGS));
+  g_object_class_install_property (klass, PROP_CROP_RATIO,
+      g_param_spec_double ("crop-ratio", "Crop ratio",
+          "Part of each side that is kept: less leaves more room to move. "
+          "A change applies to the frames that come in from then on, by at most "
+          "0.005 a frame; output-size=crop keeps its size until the next caps",
+          0.5, 0.99, defaults->crop_ratio, CONTROLLABLE_FLAGS));
+  g_object_class_install_property (klass, PROP_BYPASS,
+      g_param_spec_boolean ("bypass", "Bypass",
+          "Show the frames as they came in, whole, with the same delay. A "
+          "change applies at once to the frames that go out, and the picture "
+          "passes over within " G_STRINGIFY (L1L2STAB_BYPASS_FRAMES) " frames",
+          FALSE, CONTROLLABLE_FLAGS));
+  g_object_class_install_property (klass, PROP_POST_MESSAGES,
+      g_param_spec_boolean ("post-messages", "Post messages",
+          "Post an element message \"l1l2stab-frame\" for each frame that goes "
+          "out: its motion, path, warp and quality",
+          FALSE, LIVE_FLAGS));
 }
 
 static void
-install_enums (GObjectClass * klass, const L1L2StabConfig * defaults)
+install_path (GObjectClass * klass, const L1L2StabConfig * defaults)
 {
+  g_object_class_install_property (klass, PROP_WINDOW,
+      g_param_spec_int ("window", "Window",
+          "Frames that are looked at together; as many are held back, which is "
+          "the latency", 4, 900, defaults->window, SETTING_FLAGS));
+  g_object_class_install_property (klass, PROP_OVERLAP,
+      g_param_spec_int ("overlap", "Overlap",
+          "Frames that a window shares with the next, from 3 to less than the "
+          "window: more is steadier and costs time (0 = chosen by join)",
+          0, 899, defaults->overlap, SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_JOIN,
       g_param_spec_enum ("join", "Join",
           "How the paths of two windows are joined; blend needs an overlap of "
           "at most half the window", GST_TYPE_L1L2_STAB_JOIN, defaults->join,
           SETTING_FLAGS));
+  g_object_class_install_property (klass, PROP_MOTION_MODEL,
+      g_param_spec_enum ("motion-model", "Motion model",
+          "What the camera is taken to do from one frame to the next",
+          GST_TYPE_L1L2_STAB_MOTION_MODEL, defaults->motion_model,
+          SETTING_FLAGS));
+}
+
+static void
+install_picture (GObjectClass * klass, const L1L2StabConfig * defaults)
+{
   g_object_class_install_property (klass, PROP_INTERPOLATION,
       g_param_spec_enum ("interpolation", "Interpolation",
           "How pixels are interpolated: sharpness against time",
@@ -99,10 +98,23 @@ install_enums (GObjectClass * klass, const L1L2StabConfig * defaults)
           "Size of the output: the input's, or what crop-ratio leaves of it",
           GST_TYPE_L1L2_STAB_OUTPUT_SIZE, defaults->output_size,
           SETTING_FLAGS));
+  g_object_class_install_property (klass, PROP_THREADS,
+      g_param_spec_int ("threads", "Threads",
+          "Threads that render a frame (0 = as many as there are cores)",
+          0, 64, defaults->threads, SETTING_FLAGS));
+}
 
-  gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_JOIN, 0);
-  gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_INTERPOLATION, 0);
-  gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_OUTPUT_SIZE, 0);
+static void
+install_files (GObjectClass * klass)
+{
+  g_object_class_install_property (klass, PROP_MOTION_IN,
+      g_param_spec_string ("motion-in", "Motion in",
+          "File with the motion of each frame, as motion-out writes it: the "
+          "frames are not analysed. NULL = measure", NULL, SETTING_FLAGS));
+  g_object_class_install_property (klass, PROP_MOTION_OUT,
+      g_param_spec_string ("motion-out", "Motion out",
+          "Text file to write the motion of each frame to that goes out; one "
+          "that is there is replaced. NULL = none", NULL, SETTING_FLAGS));
 }
 
 void
@@ -111,33 +123,20 @@ gst_l1l2_stab_settings_install (GObjectClass * klass)
   L1L2StabConfig defaults;
 
   l1l2stab_config_init (&defaults, sizeof (defaults));
+  install_live (klass, &defaults);
+  install_path (klass, &defaults);
+  install_picture (klass, &defaults);
+  install_files (klass);
+  g_object_class_install_property (klass, PROP_STATS,
+      g_param_spec_boxed ("stats", "Statistics",
+          "Counts, qualities and mean times since the element was started: a "
+          "structure \"l1l2stab-stats\"", GST_TYPE_STRUCTURE,
+          G_PARAM_READABLE | G_PARAM_STATIC_STRINGS));
 
-  g_object_class_install_property (klass, PROP_LAMBDA,
-      g_param_spec_double ("lambda", "Lambda",
-          "Pull towards the shaken path, per frame diagonal: 0.1 smooths most, "
-          "2 follows the shake; means the same at every size and frame rate. "
-          "A change applies to the frames that come in from then on",
-          0, 1000, defaults.lambda, LIVE_FLAGS));
-  g_object_class_install_property (klass, PROP_WINDOW,
-      g_param_spec_int ("window", "Window",
-          "Frames that are looked at together; as many are held back, which is "
-          "the latency", 4, 900, defaults.window, SETTING_FLAGS));
-  g_object_class_install_property (klass, PROP_OVERLAP,
-      g_param_spec_int ("overlap", "Overlap",
-          "Frames that a window shares with the next, from 3 to less than the "
-          "window: more is steadier and costs time (0 = chosen by join)",
-          0, 899, defaults.overlap, SETTING_FLAGS));
-  g_object_class_install_property (klass, PROP_CROP_RATIO,
-      g_param_spec_double ("crop-ratio", "Crop ratio",
-          "Part of each side that is kept: less leaves more room to move. "
-          "A change applies to the frames that come in from then on, by at most "
-          "0.005 a frame; output-size=crop keeps its size until the next caps",
-          0.5, 0.99, defaults.crop_ratio, LIVE_FLAGS));
-  install_enums (klass, &defaults);
-  g_object_class_install_property (klass, PROP_THREADS,
-      g_param_spec_int ("threads", "Threads",
-          "Threads that render a frame (0 = as many as there are cores)",
-          0, 64, defaults.threads, SETTING_FLAGS));
+  gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_JOIN, 0);
+  gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_MOTION_MODEL, 0);
+  gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_INTERPOLATION, 0);
+  gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_OUTPUT_SIZE, 0);
 }
 
 void
@@ -149,12 +148,37 @@ gst_l1l2_stab_settings_init (GstL1L2StabSettings * settings,
   l1l2stab_config_init (&settings->wanted, sizeof (settings->wanted));
 }
 
-static gboolean
-set_field (L1L2StabConfig * config, guint id, const GValue * value)
+void
+gst_l1l2_stab_settings_clear (GstL1L2StabSettings * settings)
 {
+  g_clear_pointer (&settings->motion_in, g_free);
+  g_clear_pointer (&settings->motion_out, g_free);
+}
+
+/* Nobody means a file without a name. */
+static void
+set_file (gchar ** file, const GValue * value)
+{
+  const gchar *name = g_value_get_string (value);
+
+  g_free (*file);
+  *file = name && *name ? g_strdup (name) : NULL;
+}
+
+static gboolean
+set_field (GstL1L2StabSettings * settings, guint id, const GValue * value)
+{
+  L1L2StabConfig *config = &settings->wanted;
+
   switch (id) {
     case PROP_LAMBDA:
       config->lambda = g_value_get_double (value);
+      return TRUE;
+    case PROP_CROP_RATIO:
+      config->crop_ratio = g_value_get_double (value);
+      return TRUE;
+    case PROP_BYPASS:
+      settings->bypass = g_value_get_boolean (value);
       return TRUE;
     case PROP_WINDOW:
       config->window = g_value_get_int (value);
@@ -162,11 +186,11 @@ set_field (L1L2StabConfig * config, guint id, const GValue * value)
     case PROP_OVERLAP:
       config->overlap = g_value_get_int (value);
       return TRUE;
-    case PROP_CROP_RATIO:
-      config->crop_ratio = g_value_get_double (value);
-      return TRUE;
     case PROP_JOIN:
       config->join = g_value_get_enum (value);
+      return TRUE;
+    case PROP_MOTION_MODEL:
+      config->motion_model = g_value_get_enum (value);
       return TRUE;
     case PROP_INTERPOLATION:
       config->interpolation = g_value_get_enum (value);
@@ -177,17 +201,34 @@ set_field (L1L2StabConfig * config, guint id, const GValue * value)
     case PROP_THREADS:
       config->threads = g_value_get_int (value);
       return TRUE;
+    case PROP_MOTION_IN:
+      set_file (&settings->motion_in, value);
+      return TRUE;
+    case PROP_MOTION_OUT:
+      set_file (&settings->motion_out, value);
+      return TRUE;
+    case PROP_POST_MESSAGES:
+      settings->post_messages = g_value_get_boolean (value);
+      return TRUE;
     default:
       return FALSE;
   }
 }
 
 static gboolean
-get_field (const L1L2StabConfig * config, guint id, GValue * value)
+get_field (const GstL1L2StabSettings * settings, guint id, GValue * value)
 {
+  const L1L2StabConfig *config = &settings->wanted;
+
   switch (id) {
     case PROP_LAMBDA:
       g_value_set_double (value, config->lambda);
+      return TRUE;
+    case PROP_CROP_RATIO:
+      g_value_set_double (value, config->crop_ratio);
+      return TRUE;
+    case PROP_BYPASS:
+      g_value_set_boolean (value, settings->bypass);
       return TRUE;
     case PROP_WINDOW:
       g_value_set_int (value, config->window);
@@ -195,11 +236,11 @@ get_field (const L1L2StabConfig * config, guint id, GValue * value)
     case PROP_OVERLAP:
       g_value_set_int (value, config->overlap);
       return TRUE;
-    case PROP_CROP_RATIO:
-      g_value_set_double (value, config->crop_ratio);
-      return TRUE;
     case PROP_JOIN:
       g_value_set_enum (value, config->join);
+      return TRUE;
+    case PROP_MOTION_MODEL:
+      g_value_set_enum (value, config->motion_model);
       return TRUE;
     case PROP_INTERPOLATION:
       g_value_set_enum (value, config->interpolation);
@@ -209,6 +250,15 @@ get_field (const L1L2StabConfig * config, guint id, GValue * value)
       return TRUE;
     case PROP_THREADS:
       g_value_set_int (value, config->threads);
+      return TRUE;
+    case PROP_MOTION_IN:
+      g_value_set_string (value, settings->motion_in);
+      return TRUE;
+    case PROP_MOTION_OUT:
+      g_value_set_string (value, settings->motion_out);
+      return TRUE;
+    case PROP_POST_MESSAGES:
+      g_value_set_boolean (value, settings->post_messages);
       return TRUE;
     default:
       return FALSE;
@@ -222,7 +272,7 @@ gst_l1l2_stab_settings_set (GstL1L2StabSettings * settings, guint id,
   gboolean known;
 
   GST_OBJECT_LOCK (settings->object);
-  known = set_field (&settings->wanted, id, value);
+  known = set_field (settings, id, value);
   GST_OBJECT_UNLOCK (settings->object);
   return known;
 }
@@ -234,7 +284,7 @@ gst_l1l2_stab_settings_get (GstL1L2StabSettings * settings, guint id,
   gboolean known;
 
   GST_OBJECT_LOCK (settings->object);
-  known = get_field (&settings->wanted, id, value);
+  known = get_field (settings, id, value);
   GST_OBJECT_UNLOCK (settings->object);
   return known;
 }
@@ -278,19 +328,63 @@ gst_l1l2_stab_settings_in_use (GstL1L2StabSettings * settings,
 /* A control binding sets the property, which locks: the lock is taken only after it. */
 void
 gst_l1l2_stab_settings_sample (GstL1L2StabSettings * settings,
-    const GstSegment * segment, GstBuffer * frame, gdouble * lambda,
-    gdouble * crop_ratio)
+    GstClockTime stream_time, gdouble * lambda, gdouble * crop_ratio)
 {
-  GstClockTime time = GST_CLOCK_TIME_NONE;
-
-  if (segment->format == GST_FORMAT_TIME)
-    time = gst_segment_to_stream_time (segment, GST_FORMAT_TIME,
-        GST_BUFFER_PTS (frame));
-  if (GST_CLOCK_TIME_IS_VALID (time))
-    gst_object_sync_values (settings->object, time);
+  if (GST_CLOCK_TIME_IS_VALID (stream_time))
+    gst_object_sync_values (settings->object, stream_time);
 
   GST_OBJECT_LOCK (settings->object);
   *lambda = settings->wanted.lambda;
   *crop_ratio = settings->wanted.crop_ratio;
+  GST_OBJECT_UNLOCK (settings->object);
+}
+
+/* What a controller has for the frame that goes out is asked for alone: all the rest was brought up to date for one
+ * that came in a window later. */
+gboolean
+gst_l1l2_stab_settings_sample_bypass (GstL1L2StabSettings * settings,
+    GstClockTime stream_time)
+{
+  GstControlBinding *binding =
+      gst_object_get_control_binding (settings->object, "bypass");
+  GValue *controlled = NULL;
+  gboolean bypass;
+
+  if (binding) {
+    if (GST_CLOCK_TIME_IS_VALID (stream_time)
+        && !gst_control_binding_is_disabled (binding))
+      controlled = gst_control_binding_get_value (binding, stream_time);
+    gst_object_unref (binding);
+  }
+  if (controlled) {
+    bypass = g_value_get_boolean (controlled);
+    g_value_unset (controlled);
+    g_free (controlled);
+    return bypass;
+  }
+  GST_OBJECT_LOCK (settings->object);
+  bypass = settings->bypass;
+  GST_OBJECT_UNLOCK (settings->object);
+  return bypass;
+}
+
+gboolean
+gst_l1l2_stab_settings_post_messages (GstL1L2StabSettings * settings)
+{
+  gboolean post_messages;
+
+  GST_OBJECT_LOCK (settings->object);
+  post_messages = settings->post_messages;
+  GST_OBJECT_UNLOCK (settings->object);
+  return post_messages;
+}
+
+void
+gst_l1l2_stab_settings_dup_files (GstL1L2StabSettings * settings,
+    gchar ** motion_in, gchar ** motion_out)
+{
+  GST_OBJECT_LOCK (settings->object);
+  *motion_in = g_strdup (settings->motion_in);
+  *motion_out = g_strdup (settings->motion_out);
   GST_OBJECT_UNLOCK (settings->object);
 }

@@ -27,6 +27,7 @@ gst_l1l2_stab_stream_init (GstL1L2StabStream * stream, GstElement * element)
 {
   memset (stream, 0, sizeof (*stream));
   stream->element = element;
+  gst_l1l2_stab_report_init (&stream->report, element);
   stream->log.object = GST_OBJECT_CAST (element);
   g_queue_init (&stream->held);
   g_queue_init (&stream->events);
@@ -63,7 +64,10 @@ gst_l1l2_stab_stream_open (GstL1L2StabStream * stream,
 
   gst_l1l2_stab_glue_config (&config, in_info);
   gst_l1l2_stab_glue_logger (&config.logger, &stream->log);
-  return flow (stream, l1l2stab_create (&stream->stab, &config)) == GST_FLOW_OK;
+  if (flow (stream, l1l2stab_create (&stream->stab, &config)) != GST_FLOW_OK)
+    return FALSE;
+  gst_l1l2_stab_report_use (&stream->report, stream->stab);
+  return TRUE;
 }
 
 void
@@ -199,6 +203,7 @@ gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer,
     held->link.data = held;
     held->queue = &stream->held;
     g_queue_push_tail_link (held->queue, &held->link);
+    gst_l1l2_stab_report_in (&stream->report);
     return GST_FLOW_OK;
   }
   held_frame_free (held);
@@ -262,6 +267,13 @@ gst_l1l2_stab_stream_peek (GstL1L2StabStream * stream, GstBuffer ** next)
   return flow (stream, result);
 }
 
+void
+gst_l1l2_stab_stream_set_bypass (GstL1L2StabStream * stream, gboolean bypass)
+{
+  if (stream->stab)
+    l1l2stab_set_bypass (stream->stab, bypass);
+}
+
 GstFlowReturn
 gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output,
     L1L2StabInfo * info)
@@ -297,6 +309,7 @@ gst_l1l2_stab_stream_reset (GstL1L2StabStream * stream)
 {
   if (stream->stab)
     l1l2stab_reset (stream->stab);
+  gst_l1l2_stab_report_dropped (&stream->report, stream->n_in - stream->n_out);
   stream->n_out = stream->n_in;
 }
 

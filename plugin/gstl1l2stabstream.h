@@ -8,12 +8,14 @@
 #include <gst/video/video.h>
 
 #include "gstl1l2stabglue.h"
+#include "gstl1l2stabreport.h"
 
 G_BEGIN_DECLS
 
 typedef struct
 {
   GstElement *element;          /* posts the errors; not owned */
+  GstL1L2StabReport report;     /* locks by itself */
   GstL1L2StabLog log;
   L1L2Stab *stab;               /* NULL: closed */
   GstVideoInfo in_info;
@@ -62,6 +64,10 @@ GstClockTime gst_l1l2_stab_stream_due_time (const GstL1L2StabStream * stream,
  * render() or reset(). NULL: none is ready. */
 GstFlowReturn gst_l1l2_stab_stream_peek (GstL1L2StabStream * stream,
     GstBuffer ** next);
+
+/* For the frames that are rendered from now on. */
+void gst_l1l2_stab_stream_set_bypass (GstL1L2StabStream * stream,
+    gboolean bypass);
 
 /* Renders the frame that peek() shows into `output`, and lets go of it. *info: what was done to it. */
 GstFlowReturn gst_l1l2_stab_stream_render (GstL1L2StabStream * stream,

@@ -1,5 +1,40 @@
 /* SPDX-License-Identifier: MIT */
 /* What GStreamer loads: the plugin "l1l2stab" and the one element in it. */
+/**
+ * SECTION:element-l1l2stab
+ * @title: l1l2stab
+ * @short_description: steadies shaken video while it plays
+ *
+ * l1l2stab follows the motion of the camera, smooths its path, and renders
+ * each frame as the smooth camera would have seen it. It looks at a window of
+ * frames together and therefore holds them back: the latency is #l1l2stab:window
+ * frames. After them, one frame comes out for each frame that comes in, with
+ * its timestamps, flags and metas.
+ *
+ * The method is that of Qu and Song, "Video stabilization with L1-L2
+ * optimization", ICIP 2013.
+ *
+ * #l1l2stab:lambda and #l1l2stab:crop-ratio may be changed, or controlled by
+ * stream time, while the stream runs: they apply to the frames that come in
+ * from then on; the crop moves by at most 0.005 a frame. The other properties
+ * take effect with the next caps, or when the element is started again; so does
+ * the size that crop-ratio gives with output-size=crop. Interlaced video has to
+ * be deinterlaced first.
+ *
+ * ## Example launch lines
+ * |[
+ * gst-launch-1.0 filesrc location=in.mp4 ! decodebin ! l1l2stab ! x264enc ! mp4mux ! filesink location=out.mp4
+ * ]| Steadies a file that has no sound.
+ * |[
+ * gst-launch-1.0 filesrc location=in.mp4 ! decodebin name=in \
+ *   in. ! queue ! l1l2stab ! x264enc ! queue ! mp4mux name=out ! filesink location=out.mp4 \
+ *   in. ! queue max-size-time=0 max-size-bytes=0 max-size-buffers=0 ! audioconvert ! avenc_aac ! out.
+ * ]| The same with sound. The queue of the other branch must have room for the
+ * whole window: by default a queue ends at one second, and the pipeline may stall.
+ * |[
+ * gst-launch-1.0 v4l2src ! videoconvert ! l1l2stab window=30 ! videoconvert ! autovideosink
+ * ]| A camera, with a delay of one second at 30 frames a second.
+ */
 #include "gstl1l2stab.h"
 
 static gboolean

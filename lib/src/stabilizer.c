@@ -380,3 +380,13 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
     l1l2_ring_drop_oldest(&s->ring);
     return L1L2STAB_OK;
 }
+
+int l1l2stab_threads(const L1L2Stab *s)
+{
+    return s ? l1l2_warp_threads(s->warp) : 0;
+}
+
+const char *l1l2stab_simd(void)
+{
+    return l1l2_warp_simd();
+}

@@ -68,6 +68,16 @@ void l1l2_warp_free(L1L2Warp *w)
     l1l2_mem_free(w);
 }
 
+int l1l2_warp_threads(const L1L2Warp *w)
+{
+    return l1l2_pool_threads(w->pool);
+}
+
+const char *l1l2_warp_simd(void)
+{
+    return l1l2_warp_u8_run(2, 1) == l1l2_warp_u8_run_plain(2, 1) ? "none" : "avx2";
+}
+
 /* The sample type's function for one plane. */
 static L1L2WarpRun *find_run(const L1L2WarpConfig *cfg, int taps, int components)
 {

@@ -44,4 +44,8 @@ void l1l2_warp_free(L1L2Warp *w);
 void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
                       uint8_t *const dst[4], const ptrdiff_t dst_stride[4]);
 
+/* How many threads render, and the instruction set of the inner loops that they use. */
+int l1l2_warp_threads(const L1L2Warp *w);
+const char *l1l2_warp_simd(void);
+
 #endif

@@ -18,14 +18,16 @@ GST_START_TEST (the_defaults_are_the_librarys)
   GstElement *element = gst_element_factory_make ("l1l2stab", NULL);
   L1L2StabConfig config;
   gdouble lambda, crop_ratio;
-  gint window, overlap, join, interpolation, output_size, threads;
-  gboolean qos;
+  gint window, overlap, join, model, interpolation, output_size, threads;
+  gboolean qos, bypass, post_messages;
+  gchar *motion_in, *motion_out;
 
   init_config (&config);
   g_object_get (element, "lambda", &lambda, "crop-ratio", &crop_ratio,
       "window", &window, "overlap", &overlap, "join", &join, "interpolation",
       &interpolation, "output-size", &output_size, "threads", &threads, "qos",
-      &qos, NULL);
+      &qos, "motion-model", &model, "bypass", &bypass, "post-messages",
+      &post_messages, "motion-in", &motion_in, "motion-out", &motion_out, NULL);
   fail_unless_equals_float (lambda, config.lambda);
   fail_unless_equals_float (crop_ratio, config.crop_ratio);
   fail_unless_equals_int (window, config.window);
@@ -34,7 +36,8 @@ GST_START_TEST (the_defaults_are_the_librarys)
   fail_unless_equals_int (interpolation, config.interpolation);
   fail_unless_equals_int (output_size, config.output_size);
   fail_unless_equals_int (threads, config.threads);
-  fail_if (qos);
+  fail_unless_equals_int (model, config.motion_model);
+  fail_if (qos || bypass || post_messages || motion_in || motion_out);
   gst_object_unref (element);
 }
 
@@ -99,16 +102,61 @@ GST_START_TEST (a_value_out_of_range_is_refused)
 
 GST_END_TEST;
 
+/* Which of these may change when: of the others, none but at rest. */
+static const struct
+{
+  const gchar *name;
+  GParamFlags flags;
+} moments[] = {
+  {"lambda", GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING},
+  {"crop-ratio", GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING},
+  {"bypass", GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING},
+  {"post-messages", GST_PARAM_MUTABLE_PLAYING},
+  {"stats", 0},
+};
+
+GST_START_TEST (what_is_live_says_so_and_nothing_else_does)
+{
+  static const GParamFlags mask = GST_PARAM_CONTROLLABLE
+      | GST_PARAM_MUTABLE_READY | GST_PARAM_MUTABLE_PAUSED
+      | GST_PARAM_MUTABLE_PLAYING;
+  GstElement *element = gst_element_factory_make ("l1l2stab", NULL);
+  GParamSpec **specs;
+  guint n, i, k, n_others = 0;
+
+  specs = g_object_class_list_properties (G_OBJECT_GET_CLASS (element), &n);
+  for (i = 0; i < n; i++) {
+    GParamFlags expected = GST_PARAM_MUTABLE_READY;
+
+    if (specs[i]->owner_type != G_OBJECT_TYPE (element))
+      continue;
+    for (k = 0; k < G_N_ELEMENTS (moments); k++) {
+      if (g_str_equal (specs[i]->name, moments[k].name))
+        expected = moments[k].flags;
+    }
+    n_others += expected == GST_PARAM_MUTABLE_READY;
+    fail_unless ((specs[i]->flags & mask) == expected, "%s", specs[i]->name);
+    fail_unless (g_param_spec_get_blurb (specs[i]) != NULL);
+  }
+  fail_unless (n_others >= 9);
+  g_free (specs);
+  gst_object_unref (element);
+}
+
+GST_END_TEST;
+
 static const gchar *names[] = {
   "lambda", "window", "overlap", "crop-ratio", "join", "interpolation",
-  "output-size", "threads"
+  "output-size", "threads", "motion-model", "bypass", "post-messages",
+  "motion-in", "motion-out"
 };
 
 GST_START_TEST (every_setting_reads_back)
 {
   GstElement *element = gst_element_factory_make ("l1l2stab", NULL);
   static const gchar *values[] = {
-    "2.25", "60", "20", "0.75", "blend", "lanczos", "crop", "3"
+    "2.25", "60", "20", "0.75", "blend", "lanczos", "crop", "3", "affine",
+    "true", "true", "a.motion", "b.motion"
   };
   guint i;
 
@@ -259,6 +307,7 @@ settings_suite (void)
   tcase_add_loop_test (tc, the_ranges_are_the_librarys, 0,
       G_N_ELEMENTS (numbers));
   tcase_add_test (tc, a_value_out_of_range_is_refused);
+  tcase_add_test (tc, what_is_live_says_so_and_nothing_else_does);
   tcase_add_test (tc, every_setting_reads_back);
   tcase_add_loop_test (tc,
       a_contradiction_fails_at_the_start_and_says_what_to_change, 0,

@@ -299,6 +299,13 @@ L1L2STAB_API void l1l2stab_free(L1L2Stab **s);
 /* One line on a result: whose fault it is and what to do. Never NULL, never to be freed. */
 L1L2STAB_API const char *l1l2stab_strerror(L1L2StabResult result);
 
+/* How many threads work on a frame, the caller's included; 0 for NULL. */
+L1L2STAB_API int l1l2stab_threads(const L1L2Stab *s);
+
+/* The instruction set that the warp's inner loops are made for on this processor: "avx2", or "none" for plain C. The
+ * pictures are the same. Never NULL, never to be freed. */
+L1L2STAB_API const char *l1l2stab_simd(void);
+
 /* "major.minor.patch" of the library that runs. */
 L1L2STAB_API const char *l1l2stab_version(void);
 

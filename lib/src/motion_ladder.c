@@ -64,8 +64,8 @@ static double spread(const L1L2Mat *F, const L1L2Pair *pairs, const bool *inlier
     return sqrt(sum / inliers);
 }
 
-/* How far off the corners are to be expected, from the scatter of the inliers about F. Of what noise scatters beyond the
- * threshold nothing is seen, so few inliers mean more of it, if only up to a point: there are other outliers. */
+/* How far off the corners are to be expected, from the scatter of the inliers about F. What noise scatters beyond the
+ * threshold is not seen, so few inliers mean more of it, if only up to a point: there are other outliers. */
 static double expected_error(const L1L2Ladder *l, const L1L2Votes *v, const L1L2Rung *r, const L1L2Pair *pairs,
                              const bool *inlier, int count)
 {
@@ -136,8 +136,9 @@ static double rival_votes(const L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat
     for (int i = 0; i < count; i++)
         if (!inlier[i])
             other[others] = pairs[i], other_votes[others++] = votes[i];
-    const int inliers = l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, other, (L1L2Say){other_votes, NULL}, others, l->threshold, rng,
-                                    agreeing, &rival);
+    const L1L2Say say = {other_votes, NULL};
+    const int inliers = l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, other, say, others, l->threshold, rng, agreeing,
+                                    &rival);
     if (inliers < min_rival_inliers || spread(&rival, other, agreeing, others) > max_spread * l->threshold)
         return 0.0;
     const double apart = l1l2_mat_corner_distance(F, &rival, v->half_w, v->half_h) / l->threshold;

@@ -109,8 +109,11 @@ static void draw_shape(float *tile, int log2_size, uint64_t key)
     for (int j = -reach; j <= reach; j++) {
         for (int i = -reach; i <= reach; i++) {
             const float x = c * (float)i + s * (float)j, y = c * (float)j - s * (float)i;
-            const float inside = disc ? half_h - sqrtf(x * x + y * y) : fminf(half_w - fabsf(x), half_h - fabsf(y));
-            const float k = fminf(fmaxf(inside / 3.0f + 0.5f, 0.0f), 1.0f);
+            const float to_side = half_w - fabsf(x), to_end = half_h - fabsf(y);
+            const float inside = disc ? half_h - sqrtf(x * x + y * y) : to_side < to_end ? to_side : to_end;
+            if (inside <= -1.5f)
+                continue;
+            const float k = inside < 1.5f ? inside / 3.0f + 0.5f : 1.0f;
             const int row = ((int)cy + j) & (n - 1), column = ((int)cx + i) & (n - 1);
             tile[(size_t)row * n + column] += level * k * k * (3.0f - 2.0f * k);
         }

@@ -96,6 +96,12 @@ int synth_shot(const Synth *s, int t)
     return moment.shot + (moment.mix > 0.5);
 }
 
+double synth_contrast(const Synth *s, int t)
+{
+    const SynthMoment m = synth_timeline_at(&s->cfg, t);
+    return m.mix > 0.0 ? 0.0 : fmin(m.gain, 1.0) * (1.0 - m.white) * (1.0 - m.black) * (1.0 - m.cover);
+}
+
 /* A dissolve shows two scenes. */
 static void mix(const Frame *f, const SynthSpan *span, uint16_t *deep)
 {

@@ -109,6 +109,9 @@ void synth_motion(const Synth *s, int t, double F[9]);
 /* The shot that most of frame t shows, from 0. All shots have the one camera. */
 int synth_shot(const Synth *s, int t);
 
+/* How much of one scene's contrast frame t has, [0, 1]: 0 where it is black, white or covered, or shows two scenes. */
+double synth_contrast(const Synth *s, int t);
+
 /* Frame t at the config's size. data, stride: as in L1L2StabFrame. */
 void synth_render(const Synth *s, int t, L1L2StabFormat format, uint8_t *const data[4], const ptrdiff_t stride[4]);
 void synth_render_gray(const Synth *s, int t, uint8_t *data, ptrdiff_t stride);

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+/* A synthetic clip through the whole library, and its truth against what was measured and made of it. */
+#ifndef SYNTH_TRIAL_H
+#define SYNTH_TRIAL_H
+
+#include "synth.h"
+
+typedef struct SynthTrial {
+    int frames;
+    L1L2StabInfo *info;  /* of each frame */
+    double *error;       /* of each F_t, px: rms over the frame's corners; 0 for a path's first frame */
+    double *bias;        /* how far off the path is, px: at the corners, since the shot began */
+    int *shot;           /* that each frame shows; -1 where there is nothing to be seen, or two shots */
+    double rms, worst;   /* of `error`, over the frames whose motion was measured */
+    double drift;        /* `bias` at the end */
+    double quality;      /* lowest of those frames */
+    int lost;            /* frames whose motion was not measured */
+    int starts;          /* paths that start after the first frame */
+    double jitter_in, jitter_out; /* rms acceleration of the true camera, and of where the crop windows truly look, px:
+                                   * over the frame's corners, within shots, where there is something to be seen */
+    double stage_ms[L1L2STAB_STAGE_COUNT]; /* a frame */
+} SynthTrial;
+
+/* The first `frames` frames, in a grey format, with the library's defaults. Aborts when out of memory. */
+SynthTrial synth_trial_new(const SynthConfig *cfg, int frames);
+void synth_trial_free(SynthTrial *trial);
+
+/* How far apart two motions of a frame put its corners: rms, px. */
+double synth_trial_distance(const SynthConfig *cfg, const double A[9], const double B[9]);
+
+#endif

@@ -207,6 +207,20 @@ gst_l1l2_stab_change_state (GstElement * element, GstStateChange transition)
       transition);
 }
 
+static gboolean
+gst_l1l2_stab_open_files (GstL1L2Stab * self)
+{
+  gchar *motion_in, *motion_out;
+  gboolean ok;
+
+  gst_l1l2_stab_settings_dup_files (&self->settings, &motion_in, &motion_out);
+  ok = gst_l1l2_stab_motion_open (&self->output.stream.files,
+      GST_ELEMENT_CAST (self), motion_in, motion_out);
+  g_free (motion_in);
+  g_free (motion_out);
+  return ok;
+}
+
 /* Settings that contradict each other are told before there is a stream: any frame will do for the check. */
 static gboolean
 gst_l1l2_stab_start (GstBaseTransform * trans)
@@ -228,7 +242,7 @@ gst_l1l2_stab_start (GstBaseTransform * trans)
 
   gst_l1l2_stab_latency_set (&self->output.latency, settings.window, NULL);
   gst_l1l2_stab_report_start (&self->output.stream.report);
-  return TRUE;
+  return gst_l1l2_stab_open_files (self);
 }
 
 static gboolean

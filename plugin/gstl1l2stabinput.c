@@ -3,13 +3,11 @@
 
 static GstFlowReturn
 apply_live_settings (GstL1L2StabOutput * output,
-    GstL1L2StabSettings * settings, GstBuffer * frame)
+    GstL1L2StabSettings * settings, GstClockTime time)
 {
   gdouble lambda, crop_ratio;
 
-  gst_l1l2_stab_settings_sample (settings,
-      gst_l1l2_stab_glue_stream_time (&output->trans->segment, frame), &lambda,
-      &crop_ratio);
+  gst_l1l2_stab_settings_sample (settings, time, &lambda, &crop_ratio);
   return gst_l1l2_stab_stream_set_live (&output->stream, lambda, crop_ratio);
 }
 
@@ -19,6 +17,8 @@ gst_l1l2_stab_input_frame (GstL1L2StabOutput * output,
 {
   const GstClockTime now = gst_l1l2_stab_output_now (output);
   const GstClockTime pts = GST_BUFFER_PTS (frame);
+  const GstClockTime time =
+      gst_l1l2_stab_glue_stream_time (&output->trans->segment, frame);
   GstFlowReturn ret;
 
   /* A frame that could not be pushed before, for want of a buffer, goes first in any case. */
@@ -27,12 +27,12 @@ gst_l1l2_stab_input_frame (GstL1L2StabOutput * output,
   else
     ret = gst_l1l2_stab_output_push_ready (output);
   if (ret == GST_FLOW_OK)
-    ret = apply_live_settings (output, settings, frame);
+    ret = apply_live_settings (output, settings, time);
   if (ret != GST_FLOW_OK) {
     gst_buffer_unref (frame);
     return ret;
   }
-  ret = gst_l1l2_stab_stream_push (&output->stream, frame, now);
+  ret = gst_l1l2_stab_stream_push (&output->stream, frame, now, time);
   if (ret == GST_FLOW_OK)
     ret = gst_l1l2_stab_output_hurry (output, now, pts);
   return ret;

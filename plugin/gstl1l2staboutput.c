@@ -50,6 +50,7 @@ gst_l1l2_stab_output_stop (GstL1L2StabOutput * output)
 {
   gst_l1l2_stab_timer_stop (&output->timer);
   gst_l1l2_stab_stream_close (&output->stream);
+  gst_l1l2_stab_motion_close (&output->stream.files);
   set_position (output, GST_CLOCK_TIME_NONE);
 }
 
@@ -160,6 +161,7 @@ gst_l1l2_stab_output_flush (GstL1L2StabOutput * output)
   GstEvent *event;
 
   gst_l1l2_stab_stream_reset (&output->stream);
+  gst_l1l2_stab_motion_flush (&output->stream.files);
   set_position (output, GST_CLOCK_TIME_NONE);
   while ((event = gst_l1l2_stab_stream_due_event (&output->stream)) != NULL) {
     if (GST_EVENT_IS_STICKY (event))

@@ -13,6 +13,8 @@ typedef struct
   GstBuffer *buffer;            /* timestamps, flags, metas; the pixels too, unless they were copied */
   GstVideoFrame pixels;         /* mapped for reading; has a reference of its own */
   GstClockTime arrival;         /* running time, or NONE */
+  GstClockTime time;            /* stream time, or NONE */
+  GstL1L2StabMotion motion;     /* if it was read */
 } HeldFrame;
 
 /* An event that must not overtake the frames that came before it. */
@@ -67,7 +69,7 @@ gst_l1l2_stab_stream_open (GstL1L2StabStream * stream,
   if (flow (stream, l1l2stab_create (&stream->stab, &config)) != GST_FLOW_OK)
     return FALSE;
   gst_l1l2_stab_report_use (&stream->report, stream->stab);
-  return TRUE;
+  return gst_l1l2_stab_motion_begin (&stream->files, in_info);
 }
 
 void
@@ -179,7 +181,7 @@ gst_l1l2_stab_stream_set_live (GstL1L2StabStream * stream, gdouble lambda,
 
 GstFlowReturn
 gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer,
-    GstClockTime arrival)
+    GstClockTime arrival, GstClockTime time)
 {
   L1L2StabFrame frame = { 0 };
   L1L2StabResult result;
@@ -195,11 +197,16 @@ gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer,
   frame.pts = (gint64) GST_BUFFER_PTS (held->buffer);
   frame.opaque = held;
   frame.release = held_frame_free;
+  held->arrival = arrival;
+  held->time = time;
+  if (!gst_l1l2_stab_motion_read (&stream->files, time, &held->motion, &frame)) {
+    held_frame_free (held);
+    return GST_FLOW_ERROR;
+  }
 
   result = l1l2stab_push (stream->stab, &frame);
   if (result == L1L2STAB_OK) {
     stream->n_in++;
-    held->arrival = arrival;
     held->link.data = held;
     held->queue = &stream->held;
     g_queue_push_tail_link (held->queue, &held->link);
@@ -278,6 +285,9 @@ GstFlowReturn
 gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output,
     L1L2StabInfo * info)
 {
+  const HeldFrame *held = g_queue_peek_head (&stream->held);
+  const GstL1L2StabMotion motion = held->motion;
+  const GstClockTime time = held->time;
   L1L2StabFrame frame = { 0 };
   L1L2StabResult result;
   GstVideoFrame pixels;
@@ -291,9 +301,11 @@ gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output,
   result = l1l2stab_pull (stream->stab, &frame, info);
   gst_video_frame_unmap (&pixels);
 
-  if (result == L1L2STAB_OK)
-    stream->n_out++;
-  return flow (stream, result);
+  if (result != L1L2STAB_OK)
+    return flow (stream, result);
+  stream->n_out++;
+  return gst_l1l2_stab_motion_write (&stream->files, time, &motion, info) ?
+      GST_FLOW_OK : GST_FLOW_ERROR;
 }
 
 GstFlowReturn

@@ -8,6 +8,7 @@
 #include <gst/video/video.h>
 
 #include "gstl1l2stabglue.h"
+#include "gstl1l2stabmotion.h"
 #include "gstl1l2stabreport.h"
 
 G_BEGIN_DECLS
@@ -16,6 +17,7 @@ typedef struct
 {
   GstElement *element;          /* posts the errors; not owned */
   GstL1L2StabReport report;     /* locks by itself */
+  GstL1L2StabMotionFiles files; /* opened and closed by the owner */
   GstL1L2StabLog log;
   L1L2Stab *stab;               /* NULL: closed */
   GstVideoInfo in_info;
@@ -46,9 +48,9 @@ gboolean gst_l1l2_stab_stream_is_empty (const GstL1L2StabStream * stream);
 GstFlowReturn gst_l1l2_stab_stream_set_live (GstL1L2StabStream * stream,
     gdouble lambda, gdouble crop_ratio);
 
-/* Takes `buffer`, which came in at `arrival`, a running time; NONE: not known. */
+/* Takes `buffer`, which came in at `arrival`, a running time; `time` is its stream time. NONE: not known. */
 GstFlowReturn gst_l1l2_stab_stream_push (GstL1L2StabStream * stream,
-    GstBuffer * buffer, GstClockTime arrival);
+    GstBuffer * buffer, GstClockTime arrival, GstClockTime time);
 
 /* Makes the frames ready that have been held for `limit`, and those before them, whatever look-ahead they have. Time is
  * counted from their arrival to `now`, a running time, and from their timestamp to `position`, which the input has come

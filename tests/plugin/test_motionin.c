@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: MIT */
+/* Motion files that others wrote: how frames find their lines, and what is wrong with the file. */
+#include "motion_fixture.h"
+
+/* A file of pans by 1, 2, 3, ... pixels; with the frames' times or without. */
+static void
+write_pans (gboolean timed)
+{
+  GString *text = g_string_new ("l1l2stab-motion 1\r\nmade-by somebody\n\n"
+      "size 160 120\nframerate 25/1\n");
+  guint i;
+
+  for (i = 0; i < N_FRAMES; i++) {
+    if (timed)      /* nearly */
+      g_string_append_printf (text, "%" G_GUINT64_FORMAT,
+          i * FRAME_DURATION + 333);
+    else
+      g_string_append (text, "  -");
+    g_string_append_printf (text, " %d given 1 0\t0 1 0 %u 0 0x1p0 -.5e0\n",
+        i == CUT, i);
+  }
+  write_file ("in", text->str);
+  g_string_free (text, TRUE);
+}
+
+/* The motion of the frame that a message tells of; FALSE: a path starts with it. */
+static gboolean
+next_motion (GstHarness * h, gdouble * x, gdouble * y)
+{
+  GstMessage *message = stab_harness_message (h, GST_MESSAGE_ELEMENT);
+  const GstStructure *frame = gst_message_get_structure (message);
+  gboolean starts;
+  gdouble F[9];
+
+  stab_get_matrix (frame, "motion", F);
+  gst_structure_get_boolean (frame, "path-start", &starts);
+  *x = F[2];
+  *y = F[5];
+  gst_message_unref (message);
+  return !starts;
+}
+
+GST_START_TEST (frames_that_are_left_out_or_run_backward_find_their_motion)
+{
+  static const guint forward[] = { 3, 4, 6, 9, 9 + 5, 19, 20 };
+  static const guint backward[] = { 12, 11, 8, 5 };
+  GstHarness *h = harness_new ("in", NULL);
+  GstSegment segment;
+  gdouble x, y;
+  guint i;
+
+  write_pans (TRUE);
+  play (h);
+  for (i = 0; i < G_N_ELEMENTS (forward); i++)
+    push_frame (h, forward[i]);
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.rate = -1;
+  segment.stop = GST_SECOND;
+  gst_harness_push_event (h, gst_event_new_segment (&segment));
+  for (i = 0; i < G_N_ELEMENTS (backward); i++)
+    push_frame (h, backward[i]);
+  gst_harness_push_event (h, gst_event_new_eos ());
+
+  fail_if (next_motion (h, &x, &y));
+  fail_unless (next_motion (h, &x, &y) && x == 4 && y == -.5);
+  fail_unless (next_motion (h, &x, &y) && x == 5 + 6 && y == -1);
+  fail_unless (next_motion (h, &x, &y) && x == 7 + 8 + 9);
+  fail_unless (next_motion (h, &x, &y) && x == 10 + 11 + 12 + 13 + 14);
+  fail_if (next_motion (h, &x, &y));    /* the cut was left out */
+  fail_unless (next_motion (h, &x, &y) && x == 20);
+  fail_if (next_motion (h, &x, &y));
+  fail_unless (next_motion (h, &x, &y) && x == -12 && y == .5);
+  fail_unless (next_motion (h, &x, &y) && x == -(9 + 10 + 11));
+  fail_unless (next_motion (h, &x, &y) && x == -(6 + 7 + 8));
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (lines_without_times_are_taken_one_after_the_other)
+{
+  GstHarness *h = harness_new ("in", NULL);
+  GstSegment segment;
+  gdouble x, y;
+  guint i, round;
+
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  write_pans (FALSE);
+  play (h);
+  for (round = 0; round < 2; round++) {
+    for (i = 0; i < N_FRAMES; i++)
+      push_frame (h, i);
+    gst_harness_push_event (h, gst_event_new_flush_start ());
+    gst_harness_push_event (h, gst_event_new_flush_stop (TRUE));
+    gst_harness_push_event (h, gst_event_new_segment (&segment));
+  }
+  for (round = 0; round < 2; round++) {
+    for (i = 0; i < N_FRAMES - WINDOW + 1; i++) {
+      const gboolean moves = next_motion (h, &x, &y);
+
+      fail_unless (moves == (i != 0 && i != CUT));
+      fail_unless (!moves || x == i, "%u: %g", i, x);
+    }
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+#define MAGIC "l1l2stab-motion 1\n"
+#define FRAME " 0 given 1 0 0 1 0 0 0 1 0\n"
+
+static const struct
+{
+  const gchar *text, *words;
+} faulty[] = {
+  {"", "line 1 of "},
+  {"l1l2stab-motion 2\n", "line 1 of "},
+  {"# a comment\n" MAGIC, "line 1 of "},
+  {MAGIC "size 160\n", "line 2 of "},
+  {MAGIC "framerate 25\n", "has no rate such as"},
+  {MAGIC "0" FRAME "# between\n0 0 given\n", "line 4 of "},
+  {MAGIC "0,5" FRAME, "a time in nanoseconds"},
+  {MAGIC "0 2 given 1 0 0 1 0 0 0 1 0\n", "neither 0 nor 1"},
+  {MAGIC "0 0 rotation 1 0 0 1 0 0 0 1 0\n", "a model that is not known"},
+  {MAGIC "0 0 given 1 0 0 1,0 0 0 0 1 0\n", "not of six numbers"},
+  {MAGIC "0 0 given 1 0 0 nan 0 0 0 1 0\n", "not of six numbers"},
+  {MAGIC "0 0 given 1 0 0 1 0 0 0 -1 0\n", "cannot be inverted, or mirrors"},
+  {MAGIC "40" FRAME "40" FRAME, "not later than the line before"},
+  {MAGIC "40" FRAME "-" FRAME, "others have none"},
+};
+
+GST_START_TEST (a_faulty_file_stops_the_start_and_the_error_says_where)
+{
+  GstHarness *h = harness_new ("in", NULL);
+
+  write_file ("in", faulty[__i__].text);
+  fail_unless_equals_int (gst_element_set_state (h->element,
+          GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+  assert_error_says (h, GST_RESOURCE_ERROR_READ, faulty[__i__].words);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (files_that_cannot_be_opened_are_an_error_at_the_start)
+{
+  static const struct
+  {
+    const gchar *in, *out, *words;
+    gint code;
+  } cases[] = {
+    {"missing", NULL, "missing", GST_RESOURCE_ERROR_OPEN_READ},
+    {"missing", "a", "missing", GST_RESOURCE_ERROR_OPEN_READ},
+    {NULL, "missing/a", "missing/a", GST_RESOURCE_ERROR_OPEN_WRITE},
+    {"in", "in", "are both", GST_RESOURCE_ERROR_OPEN_WRITE},
+  };
+  gchar *kept;
+  guint i;
+
+  write_file ("a", "as it was");
+  for (i = 0; i < G_N_ELEMENTS (cases); i++) {
+    GstHarness *h = harness_new (cases[i].in, cases[i].out);
+
+    fail_unless_equals_int (gst_element_set_state (h->element,
+            GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+    assert_error_says (h, cases[i].code, cases[i].words);
+    stab_harness_free (h);
+  }
+  kept = contents ("a");
+  fail_unless_equals_string (kept, "as it was");
+  g_free (kept);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (frames_of_another_size_or_rate_or_time_are_refused)
+{
+  static const struct
+  {
+    const gchar *text, *words;
+  } cases[] = {
+    {MAGIC "size 1920 1080\n0" FRAME, "is of frames of 1920x1080 pixels"},
+    {MAGIC "framerate 30/1\n-" FRAME, "is of 30/1 frames a second"},
+    {MAGIC "size 160 120\n90000000" FRAME, "has no line for the frame"},
+    {MAGIC "framerate 25/1\n", "has no line for the frame"},
+  };
+  guint i;
+
+  for (i = 0; i < G_N_ELEMENTS (cases); i++) {
+    GstHarness *h = harness_new ("in", NULL);
+    GstCaps *caps = gst_caps_from_string (NOISE_CAPS);
+
+    write_file ("in", cases[i].text);
+    gst_element_set_state (h->element, GST_STATE_PLAYING);
+    gst_harness_push_event (h, gst_event_new_stream_start ("s"));
+    gst_harness_set_src_caps (h, caps);
+    fail_if (gst_harness_push (h, stab_noise_new (0)) == GST_FLOW_OK);
+    assert_error_says (h, GST_RESOURCE_ERROR_READ, cases[i].words);
+    stab_harness_free (h);
+  }
+}
+
+GST_END_TEST;
+
+static Suite *
+motionin_suite (void)
+{
+  Suite *s = suite_create ("motionin");
+  TCase *tc = tcase_create ("motionin");
+
+  suite_add_tcase (s, tc);
+  tcase_add_checked_fixture (tc, make_folder, remove_folder);
+  tcase_add_test (tc,
+      frames_that_are_left_out_or_run_backward_find_their_motion);
+  tcase_add_test (tc, lines_without_times_are_taken_one_after_the_other);
+  tcase_add_loop_test (tc, a_faulty_file_stops_the_start_and_the_error_says_where, 0,
+      G_N_ELEMENTS (faulty));
+  tcase_add_test (tc, files_that_cannot_be_opened_are_an_error_at_the_start);
+  tcase_add_test (tc, frames_of_another_size_or_rate_or_time_are_refused);
+  return s;
+}
+
+GST_CHECK_MAIN (motionin);

@@ -27,9 +27,9 @@ static const int min_rival_inliers = 8;
 /* A motion that does not rise above what the tracks' noise makes of it is none: the dark would shake. Below the first,
  * in thresholds, noise is not in question (200 good tracks: 0.01). */
 static const double clear_error = 0.035, significant = 3.0, most_unseen = 3.0;
-/* Half a threshold beyond the inliers it is another depth of the same scene, and no harm to follow; from here on, px of
- * thresholds at the corners, it is another thing. */
-static const double far_apart = 6.0;
+/* Next to the inliers it is another depth of the same scene, and no harm to follow; from here on, in thresholds, it is
+ * another thing. */
+static const double far_apart = 4.0;
 /* Below it, a motion is as likely the subject's as the background's. */
 static const double min_quality = 0.12;
 /* Inliers in this part of the cells are as good as all over the frame. */
@@ -124,38 +124,49 @@ static double votes_of(const double *votes, const bool *inlier, int count)
     return sum;
 }
 
-/* The votes of the best motion among those that do not agree, as far as it is another than F. */
-static double rival_votes(const L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat *F, const L1L2Pair *pairs,
-                          const double *votes, const bool *inlier, int count, L1L2Rng *rng)
+/* The best motion among those that do not agree with F. rival: `count` flags out. Returns how far it is from F where it
+ * is measured: 0 where there is none or it is the same, 1 for another thing altogether. */
+static double find_rival(const L1L2Ladder *l, const L1L2Mat *F, const L1L2Pair *pairs, const double *votes,
+                         const bool *inlier, int count, L1L2Rng *rng, bool *rival)
 {
     L1L2Pair other[L1L2_RANSAC_MAX_PAIRS] = {0};
     double other_votes[L1L2_RANSAC_MAX_PAIRS] = {0};
     bool agreeing[L1L2_RANSAC_MAX_PAIRS];
-    L1L2Mat rival;
+    L1L2Mat G;
     int others = 0;
     for (int i = 0; i < count; i++)
         if (!inlier[i])
             other[others] = pairs[i], other_votes[others++] = votes[i];
     const L1L2Say say = {other_votes, NULL};
     const int inliers = l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, other, say, others, l->threshold, rng, agreeing,
-                                    &rival);
-    if (inliers < min_rival_inliers || spread(&rival, other, agreeing, others) > max_spread * l->threshold)
+                                    &G);
+    if (inliers < min_rival_inliers || spread(&G, other, agreeing, others) > max_spread * l->threshold)
         return 0.0;
-    const double apart = l1l2_mat_corner_distance(F, &rival, v->half_w, v->half_h) / l->threshold;
-    return votes_of(other_votes, agreeing, others) * fmin(1.0, apart / far_apart);
+    for (int i = 0, k = 0; i < count; i++)
+        rival[i] = !inlier[i] && agreeing[k++];
+    return fmin(1.0, spread(F, pairs, rival, count) / (far_apart * l->threshold));
 }
 
-static double quality(L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat *F, const L1L2Pair *pairs, const double *votes,
-                      int count, bool selected, L1L2Rng *rng, const bool *inlier)
+static double quality(const L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat *F, const L1L2Pair *pairs, L1L2Say say,
+                      int count, L1L2Rng *rng, const bool *inlier, bool *ambiguous)
 {
-    const double all = votes_of(votes, NULL, count), mine = votes_of(votes, inlier, count);
-    double rival = 0.0;
+    double standing[L1L2_RANSAC_MAX_PAIRS]; /* the votes without memory: it would confirm itself */
+    bool rival[L1L2_RANSAC_MAX_PAIRS] = {false};
+    double least = 1.0;
+    const double mine = votes_of(say.votes, inlier, count), all = votes_of(say.votes, NULL, count);
+    double apart = 0.0;
     if (all - mine >= min_rival_share * all)
-        rival = rival_votes(l, v, F, pairs, votes, inlier, count, rng);
-    const double covered = l1l2_votes_coverage(v, pairs, inlier, count);
-    const double agreed = mine / all * fmax(0.0, 1.0 - rival / mine) * fmin(1.0, covered / full_coverage);
-    l->agreed = selected ? agreed : fmin(agreed, l->agreed);
-    return l->agreed;
+        apart = find_rival(l, F, pairs, say.votes, inlier, count, rng, rival);
+    for (int i = 0; i < count; i++)
+        standing[i] = say.votes[i] / say.weights[i];
+    for (int memory = 1; memory >= 0; memory--) {
+        const double *votes = memory ? say.votes : standing;
+        const double agreed = votes_of(votes, inlier, count), opposed = apart * votes_of(votes, rival, count);
+        least = fmin(least, agreed / votes_of(votes, NULL, count) * fmax(0.0, 1.0 - opposed / agreed));
+        if (memory)
+            *ambiguous = least < min_quality;
+    }
+    return least * fmin(1.0, l1l2_votes_coverage(v, pairs, inlier, count) / full_coverage);
 }
 
 static const L1L2StabModel model_of[] = {L1L2STAB_MODEL_TRANSLATION, L1L2STAB_MODEL_SIMILARITY, L1L2STAB_MODEL_AFFINE};
@@ -170,8 +181,11 @@ L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *
         r.inliers = l1l2_ransac(model, pairs, say, count, threshold, rng, inlier, &r.F);
         if (!stands(l, model, v, pairs, count, inlier, &r) || !may_rise(l, model, r.inliers))
             continue;
-        r.quality = quality(l, v, &r.F, pairs, say.votes, count, selected, rng, inlier);
-        if (r.quality < min_quality)
+        bool ambiguous;
+        r.quality = quality(l, v, &r.F, pairs, say, count, rng, inlier, &ambiguous);
+        l->agreed = selected ? r.quality : fmin(r.quality, l->agreed);
+        r.quality = l->agreed;
+        if (ambiguous)
             break;
         r.model = model_of[rung];
         const double error = expected_error(l, v, &r, pairs, inlier, count);

@@ -5,7 +5,9 @@
 
 enum { CELLS_X = L1L2_VOTE_CELLS_X, CELLS_Y = L1L2_VOTE_CELLS_Y, CELLS = L1L2_VOTE_CELLS };
 
-static const double outer_factor = 2.0;
+/* At the left, right and upper rim a vote counts so much more than in the middle, by the fourth power of the distance. A
+ * subject stands in the middle or at the bottom. */
+static const double rim_factor = 8.0;
 /* A track of ten frames has three times a new one's vote. */
 static const int grown_up = 10;
 static const double age_factor = 3.0;
@@ -24,10 +26,11 @@ static int cell_of(const L1L2Votes *v, L1L2Point p)
     return clamp(y, CELLS_Y - 1) * CELLS_X + clamp(x, CELLS_X - 1);
 }
 
-static bool is_outer(int cell)
+static double place_factor(int cell)
 {
-    const int x = cell % CELLS_X, y = cell / CELLS_X;
-    return x == 0 || y == 0 || x == CELLS_X - 1 || y == CELLS_Y - 1;
+    const double x = 2.0 * (cell % CELLS_X + 0.5) / CELLS_X - 1.0, y = 2.0 * (cell / CELLS_X + 0.5) / CELLS_Y - 1.0;
+    const double out = fmax(fabs(x), -y);
+    return 1.0 + rim_factor * out * out * out * out;
 }
 
 void l1l2_votes_reset(L1L2Votes *v)
@@ -47,7 +50,7 @@ void l1l2_votes_cast(const L1L2Votes *v, const L1L2Pair *pairs, const int *age, 
         const double seniority = 1.0 + (age_factor - 1.0) * fmin(age[i], grown_up) / grown_up;
         const double trust = least_trust + (1.0 - least_trust) * v->trust[cell];
         weights[i] = seniority * trust;
-        votes[i] = weights[i] * (is_outer(cell) ? outer_factor : 1.0) / population[cell];
+        votes[i] = weights[i] * place_factor(cell) / population[cell];
     }
 }
 

@@ -41,6 +41,9 @@ constexpr double kCornerQuality = 0.003;
 /* Cells in which no corner was chosen get a turn of their own, by their own strongest: else a burnt-in clock would
  * leave a dark scene none. */
 constexpr int kCellsX = 4, kCellsY = 3;
+/* The brightness of two pictures: a smaller change of contrast or mean (grey levels) is left to the tracking; a contrast
+ * below the third tells nothing; and what a match has to bring, as part of the difference. */
+constexpr double kSameContrast = 0.08, kSameMean = 6.0, kFlatPicture = 2.0, kNearer = 0.7;
 /* Letterbox bars: no brighter than this, and flat but for what compression leaves. Grey levels. */
 constexpr int kBlack = 40, kFlat = 10;
 /* A long strip keeps this many pixels of its short side, as far as it has them: a window has to find its place. */
@@ -59,6 +62,7 @@ struct L1L2Vision {
     int pictures = 0;                        /* taken since reset, at most 2 matter */
     cv::Rect active;                         /* the picture without its bars, of the downscaled size */
     cv::Mat mask;
+    cv::Mat matched;                         /* the previous picture in the current one's brightness */
     std::vector<cv::Point2f> from, to, back;
     std::vector<uchar> found, found_back;
     std::vector<float> error;
@@ -113,6 +117,29 @@ bool inside(const L1L2Vision *v, cv::Point2f p)
 {
     return p.x >= v->active.x && p.y >= v->active.y && p.x <= v->active.x + v->active.width - 1 &&
            p.y <= v->active.y + v->active.height - 1;
+}
+
+/* Lucas-Kanade takes a point's brightness to stay. Where a flash, a lamp or the camera's own exposure changed that of
+ * the whole picture, the previous one is given the current one's mean and contrast; if that does not bring them nearer
+ * to each other, it was something else. */
+void match_brightness(L1L2Vision *v)
+{
+    const size_t level = std::min<size_t>(4, (v->pyramid.size() - 1) / 2 * 2); /* every second entry is a picture */
+    const cv::Mat &before = v->previous_pyramid[level], &now = v->pyramid[level];
+    cv::Scalar mean[2], deviation[2];
+    cv::meanStdDev(before, mean[0], deviation[0]);
+    cv::meanStdDev(now, mean[1], deviation[1]);
+    if (deviation[0][0] < kFlatPicture || deviation[1][0] < kFlatPicture)
+        return;
+    const double gain = deviation[1][0] / deviation[0][0], offset = mean[1][0] - gain * mean[0][0];
+    if (std::abs(std::log(gain)) < kSameContrast && std::abs(mean[1][0] - mean[0][0]) < kSameMean)
+        return;
+    cv::Mat matched;
+    before.convertTo(matched, CV_8U, gain, offset);
+    if (cv::norm(now, matched, cv::NORM_L1) > kNearer * cv::norm(now, before, cv::NORM_L1))
+        return;
+    v->previous_grey.convertTo(v->matched, CV_8U, gain, offset);
+    cv::buildOpticalFlowPyramid(v->matched, v->previous_pyramid, window_size, kLevels);
 }
 
 /* How many lines of `low` and `high`, from one end on, differ by next to nothing: a bar. Not more than 45 %. */
@@ -256,6 +283,8 @@ L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t
         }
         cv::buildOpticalFlowPyramid(v->grey, v->pyramid, window_size, kLevels);
         v->pictures = std::min(v->pictures + 1, 2);
+        if (v->pictures == 2)
+            match_brightness(v);
     });
 }
 

@@ -195,6 +195,7 @@ GstEvent *
 gst_l1l2_stab_report_point_at_source (GstL1L2StabReport * report,
     GstEvent * event)
 {
+  const GstStructure *structure = gst_event_get_structure (event);
   GstL1L2StabMap map;
   gboolean has_map;
   gdouble x, y;
@@ -204,10 +205,14 @@ gst_l1l2_stab_report_point_at_source (GstL1L2StabReport * report,
   has_map = report->has_map;
   GST_OBJECT_UNLOCK (report->element);
 
-  if (has_map && gst_navigation_event_get_coordinates (event, &x, &y)
+  /* gst_navigation_event_get_coordinates() of 1.22 does not know the wheel. */
+  if (has_map && structure
+      && gst_structure_get (structure, "pointer_x", G_TYPE_DOUBLE, &x,
+          "pointer_y", G_TYPE_DOUBLE, &y, NULL)
       && gst_l1l2_stab_map_point (map.to_source, &x, &y)) {
     event = gst_event_make_writable (event);
-    gst_navigation_event_set_coordinates (event, x, y);
+    gst_structure_set (gst_event_writable_structure (event),
+        "pointer_x", G_TYPE_DOUBLE, x, "pointer_y", G_TYPE_DOUBLE, y, NULL);
   }
   return event;
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "gstl1l2stabcaps.h"
 
-#include <gst/video/video.h>
+#include "gstl1l2stabformats.h"
 
-/* The preferred format first. */
-#define FORMATS "{ I420, NV12, YV12, NV21, Y42B, Y444, " \
-    "BGRx, RGBx, BGRA, RGBA, BGR, RGB, GRAY8 }"
+#define FIRST_NAME(gst, ours) #gst
+#define NEXT_NAME(gst, ours) ", " #gst
+#define FORMATS "{ " GST_L1L2_STAB_FORMATS (FIRST_NAME, NEXT_NAME) " }"
 #define SIDE_RANGE(least) \
     "(int) [ " G_STRINGIFY (least) ", " \
     G_STRINGIFY (GST_L1L2_STAB_MAX_SIZE) " ]"
@@ -83,4 +83,18 @@ gst_l1l2_stab_caps_transform (const L1L2StabConfig * settings,
   filtered = gst_caps_intersect_full (filter, other, GST_CAPS_INTERSECT_FIRST);
   gst_caps_unref (other);
   return filtered;
+}
+
+L1L2StabFormat
+gst_l1l2_stab_caps_format (GstVideoFormat format)
+{
+  switch (format) {
+#define CASE(gst, ours) \
+    case GST_VIDEO_FORMAT_##gst: \
+      return L1L2STAB_FORMAT_##ours;
+      GST_L1L2_STAB_FORMATS (CASE, CASE)
+#undef CASE
+    default:
+      return L1L2STAB_FORMAT_UNKNOWN;
+  }
 }

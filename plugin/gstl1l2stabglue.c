@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "gstl1l2stabglue.h"
 
+#include "gstl1l2stabcaps.h"
+
 #define GST_CAT_DEFAULT gst_l1l2_stab_debug
 
 /* The library's upper bound; the frame rate only scales lambda, so a faster camera may as well be taken for this. */
@@ -64,41 +66,6 @@ gst_l1l2_stab_glue_parse_caps (GstVideoInfo * info, const GstCaps * caps)
   return TRUE;
 }
 
-static L1L2StabFormat
-format_from_video (GstVideoFormat format)
-{
-  switch (format) {
-    case GST_VIDEO_FORMAT_GRAY8:
-      return L1L2STAB_FORMAT_GRAY8;
-    case GST_VIDEO_FORMAT_I420:
-      return L1L2STAB_FORMAT_I420;
-    case GST_VIDEO_FORMAT_YV12:
-      return L1L2STAB_FORMAT_YV12;
-    case GST_VIDEO_FORMAT_NV12:
-      return L1L2STAB_FORMAT_NV12;
-    case GST_VIDEO_FORMAT_NV21:
-      return L1L2STAB_FORMAT_NV21;
-    case GST_VIDEO_FORMAT_Y42B:
-      return L1L2STAB_FORMAT_Y42B;
-    case GST_VIDEO_FORMAT_Y444:
-      return L1L2STAB_FORMAT_Y444;
-    case GST_VIDEO_FORMAT_BGRx:
-      return L1L2STAB_FORMAT_BGRX;
-    case GST_VIDEO_FORMAT_RGBx:
-      return L1L2STAB_FORMAT_RGBX;
-    case GST_VIDEO_FORMAT_BGRA:
-      return L1L2STAB_FORMAT_BGRA;
-    case GST_VIDEO_FORMAT_RGBA:
-      return L1L2STAB_FORMAT_RGBA;
-    case GST_VIDEO_FORMAT_BGR:
-      return L1L2STAB_FORMAT_BGR;
-    case GST_VIDEO_FORMAT_RGB:
-      return L1L2STAB_FORMAT_RGB;
-    default:
-      return L1L2STAB_FORMAT_UNKNOWN;
-  }
-}
-
 static L1L2StabChromaSite
 chroma_site_from_video (GstVideoChromaSite site)
 {
@@ -114,7 +81,7 @@ chroma_site_from_video (GstVideoChromaSite site)
 void
 gst_l1l2_stab_glue_config (L1L2StabConfig * config, const GstVideoInfo * info)
 {
-  config->format = format_from_video (GST_VIDEO_INFO_FORMAT (info));
+  config->format = gst_l1l2_stab_caps_format (GST_VIDEO_INFO_FORMAT (info));
   config->width = GST_VIDEO_INFO_WIDTH (info);
   config->height = GST_VIDEO_INFO_HEIGHT (info);
   config->chroma_site =

@@ -270,7 +270,7 @@ L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t
 {
     return guard(v->cfg.log, [&] {
         const L1L2FormatInfo *format = v->cfg.format;
-        const int type = CV_MAKETYPE(format->depth > 8 ? CV_16U : CV_8U, format->plane[0].components);
+        const int type = CV_MAKETYPE(format->depth > 8 ? CV_16U : CV_8U, l1l2_format_pixel_components(format));
         cv::swap(v->grey, v->previous_grey);
         std::swap(v->pyramid, v->previous_pyramid);
         if (stride > 0) {

@@ -9,6 +9,7 @@
 #include "pool.h"
 #include "warp_coords.h"
 #include "warp_kernel.h"
+#include "warp_packed.h"
 #include "warp_u16.h"
 #include "warp_u8.h"
 
@@ -20,6 +21,8 @@ struct L1L2Warp {
     L1L2WarpConfig cfg;
     L1L2WarpKernel kernel;
     L1L2Pool *pool;
+    const L1L2FormatInfo *packed; /* if frames are packed 4:2:2; then cfg.format is that of their planes */
+    L1L2WarpPlanes in, out;
 };
 
 /* One plane of one frame. */
@@ -41,6 +44,16 @@ typedef struct FrameJob {
     PlaneJob plane[L1L2_MAX_PLANES];
 } FrameJob;
 
+static bool prepare_packed(L1L2Warp *w)
+{
+    if (!l1l2_warp_packed_is(w->cfg.format))
+        return true;
+    w->packed = w->cfg.format;
+    w->cfg.format = l1l2_format_info(L1L2STAB_FORMAT_Y42B);
+    return l1l2_warp_packed_new(&w->in, w->cfg.in_width, w->cfg.in_height) &&
+           l1l2_warp_packed_new(&w->out, w->cfg.out_width, w->cfg.out_height);
+}
+
 L1L2StabResult l1l2_warp_create(L1L2Warp **out, const L1L2WarpConfig *cfg)
 {
     *out = NULL;
@@ -52,7 +65,7 @@ L1L2StabResult l1l2_warp_create(L1L2Warp **out, const L1L2WarpConfig *cfg)
     w->cfg = *cfg;
     l1l2_warp_kernel_init(&w->kernel, cfg->interpolation);
     w->pool = l1l2_pool_create(cfg->threads);
-    if (!w->pool) {
+    if (!w->pool || !prepare_packed(w)) {
         l1l2_warp_free(w);
         return L1L2STAB_ERR_NOMEM;
     }
@@ -64,6 +77,8 @@ void l1l2_warp_free(L1L2Warp *w)
 {
     if (!w)
         return;
+    l1l2_warp_packed_free(&w->in);
+    l1l2_warp_packed_free(&w->out);
     l1l2_pool_free(w->pool);
     l1l2_mem_free(w);
 }
@@ -117,8 +132,8 @@ static void render_part(void *context, int index)
     render_band(&job->plane[plane], job->kernel, index);
 }
 
-void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
-                      uint8_t *const dst[4], const ptrdiff_t dst_stride[4])
+static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4],
+                          const ptrdiff_t src_stride[4], uint8_t *const dst[4], const ptrdiff_t dst_stride[4])
 {
     const L1L2WarpConfig *cfg = &w->cfg;
     const L1L2FormatInfo *format = cfg->format;
@@ -147,4 +162,16 @@ void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const 
         bands += plane->bands;
     }
     l1l2_pool_run(w->pool, bands, render_part, &job);
+}
+
+void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
+                      uint8_t *const dst[4], const ptrdiff_t dst_stride[4])
+{
+    if (!w->packed) {
+        render_planes(w, map, src, src_stride, dst, dst_stride);
+        return;
+    }
+    l1l2_warp_packed_split(w->pool, w->packed, src[0], src_stride[0], &w->in);
+    render_planes(w, map, (const uint8_t *const *)w->in.data, w->in.stride, w->out.data, w->out.stride);
+    l1l2_warp_packed_merge(w->pool, w->packed, &w->out, dst[0], dst_stride[0]);
 }

@@ -18,12 +18,13 @@ static inline int clamp(int value, int low, int high)
     return value < low ? low : value > high ? high : value;
 }
 
+/* Numbers are cut to 16 bits as AVX2 has them: that matters only where a component has bits above its depth. */
 SPECIALIZED int weigh_row(const uint8_t *row, const ptrdiff_t *col, const int16_t *wx, int shift, const int bias,
                           const int taps)
 {
     int sum = 0;
     for (int k = 0; k < taps; k++)
-        sum += ((load(row + col[k]) >> shift) - bias) * wx[k];
+        sum += (int16_t)((load(row + col[k]) >> shift) - bias) * wx[k];
     return sum;
 }
 
@@ -33,7 +34,7 @@ SPECIALIZED int weigh_narrow(const L1L2WarpPlane *src, const uint8_t *const *row
 {
     int sum = l1l2_warp_u16_narrow_round(src->depth);
     for (int r = 0; r < taps; r++)
-        sum += (weigh_row(row[r], col, wx, src->shift, 0, taps) >> src->depth) * wy[r];
+        sum += (int16_t)(weigh_row(row[r], col, wx, src->shift, 0, taps) >> src->depth) * wy[r];
     return sum >> l1l2_warp_u16_narrow_shift(src->depth);
 }
 

@@ -65,7 +65,8 @@ SPECIALIZED void sample_at_edge(const L1L2WarpPlane *src, const L1L2WarpKernel *
 /* All taps of a position along an axis of `size` samples lie in it. */
 SPECIALIZED bool is_inside(int32_t at, int size, const int taps)
 {
-    return (uint32_t)(at >> L1L2_WARP_PHASE_BITS) - (uint32_t)(taps / 2 - 1) < (uint32_t)(size - taps + 1);
+    return size >= taps &&
+           (uint32_t)(at >> L1L2_WARP_PHASE_BITS) - (uint32_t)(taps / 2 - 1) < (uint32_t)(size - taps + 1);
 }
 
 /* Run after run of samples that need no clamping, and of those that do. */

@@ -13,7 +13,8 @@ static int clamp(int value, int low, int high)
 /* The loop tests' index is the format. */
 START_TEST(the_identity_copies)
 {
-    Picture src = picture_new((L1L2StabFormat)_i, 45, 27), dst = picture_new((L1L2StabFormat)_i, 45, 27);
+    const int width = is_packed(_i) ? 46 : 45; /* pairs of pixels */
+    Picture src = picture_new((L1L2StabFormat)_i, width, 27), dst = picture_new((L1L2StabFormat)_i, width, 27);
     picture_randomize(&src, 1);
     const L1L2Mat map = l1l2_mat_identity();
     for (int kernel = 0; kernel < KERNELS; kernel++)
@@ -31,7 +32,9 @@ END_TEST
 
 START_TEST(whole_steps_copy_and_repeat_the_edge)
 {
-    static const int steps[][2] = {{4, -2}, {-6, 8}, {0, 2}, {60, 0}, {-400, 300}};
+    if (is_packed(_i))
+        return;
+    static const int steps[][2] = {{4, -2}, {-8, 8}, {0, 2}, {60, 0}, {-400, 300}};
     Picture src = picture_new((L1L2StabFormat)_i, 45, 27), dst = picture_new((L1L2StabFormat)_i, 45, 27);
     picture_randomize(&src, 2);
     for (size_t k = 0; k < sizeof steps / sizeof steps[0]; k++)
@@ -48,7 +51,7 @@ START_TEST(whole_steps_copy_and_repeat_the_edge)
                     for (int u = 0; u < p->width; u++)
                         if (memcmp(sample(&dst, i, u, v),
                                    sample(&src, i, clamp(u + dx, 0, p->width - 1), clamp(v + dy, 0, p->height - 1)),
-                                   (size_t)p->components))
+                                   (size_t)p->sample_bytes))
                             ck_abort_msg("kernel %d plane %d (%d, %d) by (%d, %d)", kernel, i, u, v, dx, dy);
             }
         }
@@ -59,7 +62,9 @@ END_TEST
 
 START_TEST(half_a_turn_reverses)
 {
-    Picture src = picture_new((L1L2StabFormat)_i, 46, 28), dst = picture_new((L1L2StabFormat)_i, 46, 28);
+    if (is_packed(_i))
+        return;
+    Picture src = picture_new((L1L2StabFormat)_i, 48, 28), dst = picture_new((L1L2StabFormat)_i, 48, 28);
     picture_randomize(&src, 3);
     const L1L2Mat map = l1l2_mat_similarity(-1.0, 0.0, 0.0, 0.0);
     L1L2WarpConfig cfg = warp_config(&src, &dst);
@@ -70,7 +75,7 @@ START_TEST(half_a_turn_reverses)
             for (int u = 0; u < src.plane[i].width; u++)
                 if (memcmp(sample(&dst, i, u, v),
                            sample(&src, i, src.plane[i].width - 1 - u, src.plane[i].height - 1 - v),
-                           (size_t)src.plane[i].components))
+                           (size_t)src.plane[i].sample_bytes))
                     ck_abort_msg("plane %d (%d, %d)", i, u, v);
     picture_free(&src);
     picture_free(&dst);
@@ -79,14 +84,16 @@ END_TEST
 
 START_TEST(a_flat_picture_stays_flat)
 {
-    static const uint8_t levels[] = {0, 1, 16, 127, 128, 235, 254, 255};
+    static const double levels[] = {0.0, 0.004, 0.06, 0.498, 0.502, 0.92, 0.996, 1.0}; /* of full range */
     L1L2Rng rng = l1l2_rng_seeded(4);
-    Picture src = picture_new((L1L2StabFormat)_i, 45, 27), dst = picture_new((L1L2StabFormat)_i, 45, 27);
-    for (size_t k = 0; k < sizeof levels; k++)
+    const int width = is_packed(_i) ? 46 : 45;
+    Picture src = picture_new((L1L2StabFormat)_i, width, 27), dst = picture_new((L1L2StabFormat)_i, width, 27);
+    for (size_t k = 0; k < sizeof levels / sizeof levels[0]; k++)
         for (int kernel = 0; kernel < KERNELS; kernel++) {
             for (int i = 0; i < src.format->planes; i++)
                 for (int v = 0; v < src.plane[i].height; v++)
-                    memset(sample(&src, i, 0, v), levels[k], (size_t)(src.plane[i].width * src.plane[i].components));
+                    for (int c = 0; c < src.plane[i].width * src.plane[i].components; c++)
+                        set_level(&src, i, 0, v, c, (int)lrint(levels[k] * max_level(&src)));
             L1L2WarpConfig cfg = warp_config(&src, &dst);
             cfg.interpolation = (L1L2StabInterpolation)kernel;
             const L1L2Mat map = random_similarity(&rng);
@@ -145,7 +152,7 @@ START_TEST(rows_may_run_from_bottom_to_top)
     for (int i = 0; i < src.format->planes; i++)
         for (int v = 0; v < src.plane[i].height; v++)
             memcpy(sample(&from, i, 0, v), sample(&src, i, 0, v),
-                   (size_t)(src.plane[i].width * src.plane[i].components));
+                   (size_t)(src.plane[i].width * src.plane[i].sample_bytes));
     const L1L2Mat map = l1l2_mat_similarity(0.93, 0.06, 1.3, -0.7);
     const L1L2WarpConfig cfg = warp_config(&src, &dst);
     warp_picture(&cfg, &map, &src, &expected);
@@ -173,7 +180,7 @@ START_TEST(a_smaller_output_is_the_middle_of_the_full_one)
         const Plane *p = &crop.plane[i];
         const int left = (full.plane[i].width - p->width) / 2, top = (full.plane[i].height - p->height) / 2;
         for (int v = 0; v < p->height; v++)
-            if (memcmp(sample(&crop, i, 0, v), sample(&full, i, left, top + v), (size_t)(p->width * p->components)))
+            if (memcmp(sample(&crop, i, 0, v), sample(&full, i, left, top + v), (size_t)(p->width * p->sample_bytes)))
                 ck_abort_msg("plane %d row %d", i, v);
     }
     assert_guards_untouched(&crop);
@@ -201,9 +208,9 @@ START_TEST(maps_to_nowhere_give_pixels_of_the_picture)
             warp_picture(&cfg, &maps[k], &src, &dst);
             for (int v = 0; v < 27; v++)
                 for (int u = 0; u < 45; u++) {
-                    const int level = *sample(&dst, 0, u, v);
-                    if (k < 3 ? level != 100 + 44 + 26 : level < 98 || level > 100 + 44 + 26 + 2)
-                        ck_abort_msg("map %zu (%d, %d): %d", k, u, v, level);
+                    const int got = *sample(&dst, 0, u, v);
+                    if (k < 3 ? got != 100 + 44 + 26 : got < 98 || got > 100 + 44 + 26 + 2)
+                        ck_abort_msg("map %zu (%d, %d): %d", k, u, v, got);
                 }
         }
     picture_free(&src);
@@ -269,7 +276,7 @@ END_TEST
 
 int main(void)
 {
-    const int first = L1L2STAB_FORMAT_GRAY8, end = L1L2STAB_FORMAT_RGB + 1;
+    const int first = FIRST_FORMAT, end = END_FORMAT;
     Suite *suite = suite_create("warp, exactly");
     TCase *tc = tcase_create("exact");
     tcase_add_loop_test(tc, the_identity_copies, first, end);

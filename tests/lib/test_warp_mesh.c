@@ -275,7 +275,7 @@ int main(void)
     tc = tcase_create("pictures");
     tcase_add_loop_test(tc, every_format_and_kernel_follows_a_floating_point_warp, L1L2STAB_FORMAT_GRAY8,
                         L1L2STAB_FORMAT_RGB + 1);
-    tcase_add_loop_test(tc, the_mesh_of_the_identity_copies, L1L2STAB_FORMAT_GRAY8, L1L2STAB_FORMAT_RGB + 1);
+    tcase_add_loop_test(tc, the_mesh_of_the_identity_copies, FIRST_FORMAT, L1L2STAB_FORMAT_RGB + 1);
     tcase_add_test(tc, the_bytes_do_not_depend_on_threads_or_processor);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);

@@ -41,6 +41,33 @@ START_TEST(every_phase_gives_the_bytes_of_plain_c)
 }
 END_TEST
 
+START_TEST(bits_above_the_depth_do_no_harm)
+{
+    static L1L2WarpKernel kernel;
+    l1l2_warp_kernel_init(&kernel, (L1L2StabInterpolation)_i);
+    L1L2Rng rng = l1l2_rng_seeded(5);
+    for (int d = 0; d < DEPTHS; d++) {
+        const RunPair pair = pair_of(&kernel, 1, depths[d]), noise = {.components = 1, .depth = 16};
+        L1L2WarpPlane src = plane_new(&rng, &noise, 100, 40, 0);
+        src.depth = pair.depth;
+        src.shift = pair.shift;
+        for (int v = 0; v < 30; v++) {
+            int32_t x[64], y[64];
+            uint16_t dst[64];
+            for (int i = 0; i < 64; i++) {
+                x[i] = 5 * ONE + i * (ONE + 7);
+                y[i] = (5 + v) * ONE + 11 * i;
+            }
+            compare_runs(&pair, &src, &kernel, x, y, 64);
+            pair.fast(&src, &kernel, x, y, 64, (uint8_t *)dst);
+            for (int i = 0; i < 64; i++)
+                ck_assert_int_le(dst[i] >> pair.shift, (1 << pair.depth) - 1);
+        }
+        plane_free(&src);
+    }
+}
+END_TEST
+
 static int level(const uint8_t *at, int shift)
 {
     const int value = at[0] | at[1] << 8;
@@ -146,6 +173,7 @@ int main(void)
     TCase *tc = tcase_create("u16");
     tcase_add_loop_test(tc, every_processor_gives_the_bytes_of_plain_c, 0, 3);
     tcase_add_loop_test(tc, every_phase_gives_the_bytes_of_plain_c, 0, 3);
+    tcase_add_loop_test(tc, bits_above_the_depth_do_no_harm, 0, 3);
     tcase_add_loop_test(tc, arithmetic_costs_next_to_nothing, 0, 3);
     tcase_add_loop_test(tc, overshoot_is_cut_off, 0, 3);
     tcase_add_loop_test(tc, phase_0_copies, 0, 3);

@@ -12,16 +12,25 @@
 
 enum { GUARD = 37, GUARD_BYTE = 0xA5 }; /* guard bytes at each side of every row; GUARD rows above and below */
 
+/* Packed 4:2:2 is planes taken apart: tests of the planes leave it to test_warp_packed.c. */
+enum { FIRST_FORMAT = L1L2STAB_FORMAT_GRAY8, END_FORMAT = L1L2STAB_FORMAT_Y412_LE + 1 };
+
+static inline bool is_packed(int format)
+{
+    return format >= L1L2STAB_FORMAT_YUY2 && format <= L1L2STAB_FORMAT_VYUY;
+}
+
 typedef struct Plane {
     uint8_t *memory, *data;
     ptrdiff_t stride;
     int width, height, components; /* samples */
+    int sample_bytes;              /* of all components */
 } Plane;
 
 typedef struct Picture {
     const L1L2FormatInfo *format;
     int width, height; /* pixels */
-    Plane plane[3];
+    Plane plane[L1L2_MAX_PLANES];
 } Picture;
 
 static inline Picture picture_new(L1L2StabFormat id, int width, int height)
@@ -32,7 +41,8 @@ static inline Picture picture_new(L1L2StabFormat id, int width, int height)
         plane->width = l1l2_plane_size(width, p.format->plane[i].log2_sub_x);
         plane->height = l1l2_plane_size(height, p.format->plane[i].log2_sub_y);
         plane->components = p.format->plane[i].components;
-        plane->stride = plane->width * plane->components + 2 * GUARD;
+        plane->sample_bytes = plane->components * l1l2_format_bytes(p.format);
+        plane->stride = plane->width * plane->sample_bytes + 2 * GUARD;
         const size_t bytes = (size_t)plane->stride * (size_t)(plane->height + 2 * GUARD);
         plane->memory = malloc(bytes);
         ck_assert_ptr_nonnull(plane->memory);
@@ -50,7 +60,30 @@ static inline void picture_free(Picture *p)
 
 static inline uint8_t *sample(const Picture *p, int plane, int u, int v)
 {
-    return p->plane[plane].data + v * p->plane[plane].stride + u * p->plane[plane].components;
+    return p->plane[plane].data + v * p->plane[plane].stride + u * p->plane[plane].sample_bytes;
+}
+
+/* A component's level, 0 .. 2^depth - 1. */
+static inline int level(const Picture *p, int plane, int u, int v, int component)
+{
+    const uint8_t *at = sample(p, plane, u, v);
+    return p->format->depth > 8 ? (at[2 * component] | at[2 * component + 1] << 8) >> p->format->shift : at[component];
+}
+
+static inline void set_level(Picture *p, int plane, int u, int v, int component, int to)
+{
+    uint8_t *at = sample(p, plane, u, v);
+    if (p->format->depth > 8) {
+        at[2 * component] = (uint8_t)(to << p->format->shift);
+        at[2 * component + 1] = (uint8_t)(to << p->format->shift >> 8);
+    } else {
+        at[component] = (uint8_t)to;
+    }
+}
+
+static inline int max_level(const Picture *p)
+{
+    return (1 << p->format->depth) - 1;
 }
 
 static inline void picture_randomize(Picture *p, uint64_t seed)
@@ -59,7 +92,7 @@ static inline void picture_randomize(Picture *p, uint64_t seed)
     for (int i = 0; i < p->format->planes; i++)
         for (int v = 0; v < p->plane[i].height; v++)
             for (int k = 0; k < p->plane[i].width * p->plane[i].components; k++)
-                sample(p, i, 0, v)[k] = (uint8_t)l1l2_rng_below(&rng, 256);
+                set_level(p, i, 0, v, k, (int)l1l2_rng_below(&rng, 1u << p->format->depth));
 }
 
 static inline void assert_guards_untouched(const Picture *p)
@@ -67,8 +100,8 @@ static inline void assert_guards_untouched(const Picture *p)
     for (int i = 0; i < p->format->planes; i++) {
         const Plane *plane = &p->plane[i];
         for (int v = -GUARD; v < plane->height + GUARD; v++)
-            for (int k = -GUARD; k < plane->width * plane->components + GUARD; k++)
-                if ((v < 0 || v >= plane->height || k < 0 || k >= plane->width * plane->components) &&
+            for (int k = -GUARD; k < plane->width * plane->sample_bytes + GUARD; k++)
+                if ((v < 0 || v >= plane->height || k < 0 || k >= plane->width * plane->sample_bytes) &&
                     plane->data[v * plane->stride + k] != GUARD_BYTE)
                     ck_abort_msg("%s plane %d: byte %d of row %d was written", p->format->name, i, k, v);
     }
@@ -78,7 +111,7 @@ static inline void assert_same_picture(const Picture *a, const Picture *b)
 {
     for (int i = 0; i < a->format->planes; i++)
         for (int v = 0; v < a->plane[i].height; v++)
-            if (memcmp(sample(a, i, 0, v), sample(b, i, 0, v), (size_t)(a->plane[i].width * a->plane[i].components)))
+            if (memcmp(sample(a, i, 0, v), sample(b, i, 0, v), (size_t)(a->plane[i].width * a->plane[i].sample_bytes)))
                 ck_abort_msg("%s plane %d: row %d differs", a->format->name, i, v);
 }
 

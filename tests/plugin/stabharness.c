@@ -52,30 +52,58 @@ stab_frame_level (guint index)
   return 20 + index % 200;
 }
 
+/* The level, of 8 bits, as component c has it in memory. */
+static guint
+component_level (const GstVideoFormatInfo * format, guint c, guint8 level)
+{
+  return level << (GST_VIDEO_FORMAT_INFO_DEPTH (format, c) - 8)
+      << GST_VIDEO_FORMAT_INFO_SHIFT (format, c);
+}
+
+/* 1.22 has the second chroma of P010 at byte 1 instead of 2. */
+static guint8 *
+component_at (const GstVideoFrame * frame, guint c, gint x, gint y)
+{
+  guint8 *plane = GST_VIDEO_FRAME_PLANE_DATA (frame,
+      GST_VIDEO_FRAME_COMP_PLANE (frame, c));
+  gint offset = GST_VIDEO_FRAME_COMP_POFFSET (frame, c);
+
+  if (GST_VIDEO_FRAME_COMP_DEPTH (frame, c) > 8)
+    offset = GST_ROUND_UP_2 (offset);
+  return plane + y * GST_VIDEO_FRAME_COMP_STRIDE (frame, c)
+      + x * GST_VIDEO_FRAME_COMP_PSTRIDE (frame, c) + offset;
+}
+
 GstBuffer *
 stab_frame_new (GstHarness * h, guint index)
 {
   GstCaps *caps = gst_pad_get_current_caps (h->srcpad);
   GstVideoInfo info;
+  GstVideoFrame frame;
   GstBuffer *buffer;
+  guint c;
+  gint x, y;
 
   fail_unless (gst_video_info_from_caps (&info, caps));
   gst_caps_unref (caps);
   buffer = gst_buffer_new_allocate (NULL, GST_VIDEO_INFO_SIZE (&info), NULL);
   gst_buffer_memset (buffer, 0, stab_frame_level (index),
       GST_VIDEO_INFO_SIZE (&info));
+  fail_unless (gst_video_frame_map (&frame, &info, buffer, GST_MAP_WRITE));
+  for (c = 0; c < GST_VIDEO_FRAME_N_COMPONENTS (&frame); c++) {
+    const gboolean deep = GST_VIDEO_FRAME_COMP_DEPTH (&frame, c) > 8;
+    const guint level = component_level (info.finfo, c,
+        stab_frame_level (index));
+
+    for (y = 0; deep && y < GST_VIDEO_FRAME_COMP_HEIGHT (&frame, c); y++) {
+      for (x = 0; x < GST_VIDEO_FRAME_COMP_WIDTH (&frame, c); x++)
+        GST_WRITE_UINT16_LE (component_at (&frame, c, x, y), level);
+    }
+  }
+  gst_video_frame_unmap (&frame);
   GST_BUFFER_PTS (buffer) = index * FRAME_DURATION;
   GST_BUFFER_DURATION (buffer) = FRAME_DURATION;
   return buffer;
-}
-
-/* 32-bit formats without alpha leave their fourth byte undefined. */
-static gboolean
-is_padding (const GstVideoFormatInfo * format, gint x)
-{
-  return GST_VIDEO_FORMAT_INFO_IS_RGB (format)
-      && !GST_VIDEO_FORMAT_INFO_HAS_ALPHA (format)
-      && GST_VIDEO_FORMAT_INFO_PSTRIDE (format, 0) == 4 && x % 4 == 3;
 }
 
 void
@@ -83,27 +111,22 @@ stab_frame_assert_level (GstBuffer * buffer, GstCaps * caps, guint8 level)
 {
   GstVideoInfo info;
   GstVideoFrame frame;
-  guint p;
+  guint c;
   gint x, y;
 
   fail_unless (gst_video_info_from_caps (&info, caps));
   fail_unless (gst_video_frame_map (&frame, &info, buffer, GST_MAP_READ));
-  for (p = 0; p < GST_VIDEO_FRAME_N_PLANES (&frame); p++) {
-    gint comp[GST_VIDEO_MAX_COMPONENTS];
-    gint width, height;
+  for (c = 0; c < GST_VIDEO_FRAME_N_COMPONENTS (&frame); c++) {
+    const gboolean deep = GST_VIDEO_FRAME_COMP_DEPTH (&frame, c) > 8;
+    const guint expected = component_level (info.finfo, c, level);
 
-    gst_video_format_info_component (info.finfo, p, comp);
-    width = GST_VIDEO_FRAME_COMP_WIDTH (&frame, comp[0])
-        * GST_VIDEO_FRAME_COMP_PSTRIDE (&frame, comp[0]);
-    height = GST_VIDEO_FRAME_COMP_HEIGHT (&frame, comp[0]);
-    for (y = 0; y < height; y++) {
-      const guint8 *row = (const guint8 *) GST_VIDEO_FRAME_PLANE_DATA (&frame,
-          p) + y * GST_VIDEO_FRAME_PLANE_STRIDE (&frame, p);
+    for (y = 0; y < GST_VIDEO_FRAME_COMP_HEIGHT (&frame, c); y++) {
+      for (x = 0; x < GST_VIDEO_FRAME_COMP_WIDTH (&frame, c); x++) {
+        const guint8 *at = component_at (&frame, c, x, y);
+        const guint got = deep ? GST_READ_UINT16_LE (at) : at[0];
 
-      for (x = 0; x < width; x++) {
-        if (row[x] != level && !is_padding (info.finfo, x))
-          fail ("plane %u, byte %d of row %d: %d, not %d", p, x, y, row[x],
-              level);
+        if (got != expected)
+          fail ("component %u at %d, %d: %u, not %u", c, x, y, got, expected);
       }
     }
   }

@@ -25,7 +25,8 @@ void stab_harness_free (GstHarness * h);
 /* The next message of this type, or NULL; does not wait. */
 GstMessage *stab_harness_message (GstHarness * h, GstMessageType type);
 
-/* Frame `index` of the harness's caps: every byte is frame_level (index), and it is at index * FRAME_DURATION. */
+/* Frame `index` of the harness's caps: every component is frame_level (index), of 8 bits, and it is at index *
+ * FRAME_DURATION. */
 GstBuffer *stab_frame_new (GstHarness * h, guint index);
 guint8 stab_frame_level (guint index);
 

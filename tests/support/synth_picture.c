@@ -21,7 +21,7 @@ SynthLayout synth_layout_of(L1L2StabFormat format)
     case L1L2STAB_FORMAT_RGBA: return (SynthLayout){1, 4, 0, {0}, {-1}, 0, 0, 8, 0};
     case L1L2STAB_FORMAT_BGR: return (SynthLayout){1, 3, 2, {0}, {-1}, 0, 0, 8, 0};
     case L1L2STAB_FORMAT_RGB: return (SynthLayout){1, 3, 0, {0}, {-1}, 0, 0, 8, 0};
-    case L1L2STAB_FORMAT_UNKNOWN: break;
+    default: break; /* the others are not drawn */
     }
     abort();
 }

@@ -75,7 +75,9 @@ typedef enum L1L2StabResult {
     L1L2STAB_ERR_BACKEND = -5      /* ours: the imaging or solver library failed in a way with no fallback */
 } L1L2StabResult;
 
-/* Plane order in memory as in GStreamer and FFmpeg; all 8 bits a component. Odd sizes: chroma planes are rounded up. */
+/* Names, order of planes and layout are GStreamer's. Odd sizes: chroma planes are rounded up, packed 4:2:2 to pairs of
+ * pixels. Alpha, and what X stands for, is warped like a colour. 10, 12, 16: bits a component, in two bytes at an even
+ * address, the low one first; not offered where the processor has the high one first. */
 typedef enum L1L2StabFormat {
     L1L2STAB_FORMAT_UNKNOWN = 0,
     L1L2STAB_FORMAT_GRAY8 = 1,
@@ -90,7 +92,49 @@ typedef enum L1L2StabFormat {
     L1L2STAB_FORMAT_BGRA = 10,
     L1L2STAB_FORMAT_RGBA = 11,
     L1L2STAB_FORMAT_BGR = 12, /* one plane, 3 bytes a pixel in this order */
-    L1L2STAB_FORMAT_RGB = 13
+    L1L2STAB_FORMAT_RGB = 13,
+    L1L2STAB_FORMAT_A420 = 14, /* I420 and alpha */
+    L1L2STAB_FORMAT_AV12 = 15, /* NV12 and alpha */
+    L1L2STAB_FORMAT_NV16 = 16, /* Y, UV interleaved; chroma halved horizontally */
+    L1L2STAB_FORMAT_NV61 = 17, /* Y, VU interleaved; chroma halved horizontally */
+    L1L2STAB_FORMAT_NV24 = 18, /* Y, UV interleaved */
+    L1L2STAB_FORMAT_Y41B = 19, /* Y, U, V; chroma quartered horizontally */
+    L1L2STAB_FORMAT_XRGB = 20, /* one plane, 4 bytes a pixel in this order; X is undefined */
+    L1L2STAB_FORMAT_XBGR = 21,
+    L1L2STAB_FORMAT_ARGB = 22,
+    L1L2STAB_FORMAT_ABGR = 23,
+    L1L2STAB_FORMAT_AYUV = 24,
+    L1L2STAB_FORMAT_VUYA = 25,
+    L1L2STAB_FORMAT_GBR = 26,  /* G, B, R */
+    L1L2STAB_FORMAT_GBRA = 27, /* G, B, R, A */
+    L1L2STAB_FORMAT_YUY2 = 28, /* packed 4:2:2: one plane, two pixels in 4 bytes: Y U Y V */
+    L1L2STAB_FORMAT_UYVY = 29, /* U Y V Y */
+    L1L2STAB_FORMAT_YVYU = 30, /* Y V Y U */
+    L1L2STAB_FORMAT_VYUY = 31, /* V Y U Y */
+    L1L2STAB_FORMAT_GRAY16_LE = 32,
+    L1L2STAB_FORMAT_I420_10LE = 33,
+    L1L2STAB_FORMAT_I420_12LE = 34,
+    L1L2STAB_FORMAT_I422_10LE = 35, /* Y, U, V; chroma halved horizontally */
+    L1L2STAB_FORMAT_I422_12LE = 36,
+    L1L2STAB_FORMAT_Y444_10LE = 37,
+    L1L2STAB_FORMAT_Y444_12LE = 38,
+    L1L2STAB_FORMAT_Y444_16LE = 39,
+    L1L2STAB_FORMAT_A420_10LE = 40,
+    L1L2STAB_FORMAT_A422_10LE = 41,
+    L1L2STAB_FORMAT_A444_10LE = 42,
+    L1L2STAB_FORMAT_GBR_10LE = 43,
+    L1L2STAB_FORMAT_GBR_12LE = 44,
+    L1L2STAB_FORMAT_GBRA_10LE = 45,
+    L1L2STAB_FORMAT_GBRA_12LE = 46,
+    L1L2STAB_FORMAT_P010_10LE = 47, /* as NV12, in the upper bits of two bytes; the lower ones are zero */
+    L1L2STAB_FORMAT_P012_LE = 48,
+    L1L2STAB_FORMAT_P016_LE = 49,
+    L1L2STAB_FORMAT_ARGB64_LE = 50, /* one plane, 4 components of 16 bits a pixel in this order */
+    L1L2STAB_FORMAT_RGBA64_LE = 51,
+    L1L2STAB_FORMAT_BGRA64_LE = 52,
+    L1L2STAB_FORMAT_ABGR64_LE = 53,
+    L1L2STAB_FORMAT_AYUV64 = 54,
+    L1L2STAB_FORMAT_Y412_LE = 55 /* U Y V A, 12 bits in the upper ones of 16 */
 } L1L2StabFormat;
 
 /* Where a chroma sample lies within the luma samples that share it. Only subsampled directions look at it. */

@@ -128,7 +128,8 @@ noise_frame_new (const GstVideoInfo * info, guint index)
     }
   }
   gst_video_frame_unmap (&frame);
-  GST_BUFFER_PTS (buffer) = index * FRAME_DURATION;
+  GST_BUFFER_PTS (buffer) = info->fps_n == 0 ? index * FRAME_DURATION :
+      gst_util_uint64_scale (index, GST_SECOND * info->fps_d, info->fps_n);
   return buffer;
 }
 

@@ -89,10 +89,13 @@ gst_l1l2_stab_alloc_is_scarce (GstBuffer * buffer, guint window)
   GstParentBufferMeta *parent;
   guint i;
 
-  /* Memory of a device (DMABuf, a camera's) must go back soon. */
+  /* Memory of a device (DMABuf, a camera's) must go back soon; what may not be written is somebody's who lends it
+   * (shmsrc: of an area that all its frames share). */
   for (i = 0; i < gst_buffer_n_memory (buffer); i++) {
-    if (!gst_memory_is_type (gst_buffer_peek_memory (buffer, i),
-            GST_ALLOCATOR_SYSMEM))
+    GstMemory *memory = gst_buffer_peek_memory (buffer, i);
+
+    if (!gst_memory_is_type (memory, GST_ALLOCATOR_SYSMEM)
+        || GST_MEMORY_IS_READONLY (memory))
       return TRUE;
   }
   /* A buffer that was copied or cut out of another keeps that one from its pool. */

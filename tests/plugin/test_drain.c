@@ -263,6 +263,67 @@ GST_START_TEST (a_flush_drops_what_is_held_and_begins_anew)
 
 GST_END_TEST;
 
+static GstPadProbeReturn
+note_block (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
+{
+  g_atomic_int_inc ((gint *) user_data);
+  return GST_PAD_PROBE_OK;
+}
+
+static gpointer
+push_a_frame (gpointer user_data)
+{
+  GstHarness *h = user_data;
+
+  return GINT_TO_POINTER (gst_harness_push (h, stab_frame_new (h, WINDOW - 1)));
+}
+
+GST_START_TEST (a_flush_unblocks_a_frame_on_its_way)
+{
+  GstHarness *h = harness_with_frames (WINDOW - 1);
+  gint n_blocked = 0;
+  GThread *thread;
+
+  gst_pad_add_probe (h->sinkpad,
+      GST_PAD_PROBE_TYPE_BLOCK | GST_PAD_PROBE_TYPE_BUFFER, note_block,
+      &n_blocked, NULL);
+  thread = g_thread_new ("push", push_a_frame, h);
+  while (!g_atomic_int_get (&n_blocked))
+    g_thread_yield ();
+  gst_harness_push_event (h, gst_event_new_flush_start ());
+  fail_unless_equals_int (GPOINTER_TO_INT (g_thread_join (thread)),
+      GST_FLOW_FLUSHING);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+/* The clock's task holds the stream's lock then. */
+GST_START_TEST (a_flush_unblocks_a_frame_that_the_clock_let_go)
+{
+  GstHarness *h = harness_with_frames (3);
+  GString *out;
+  gint n_blocked = 0;
+  gulong probe;
+
+  probe = gst_pad_add_probe (h->sinkpad,
+      GST_PAD_PROBE_TYPE_BLOCK | GST_PAD_PROBE_TYPE_BUFFER, note_block,
+      &n_blocked, NULL);
+  fail_unless (gst_harness_crank_single_clock_wait (h));
+  while (!g_atomic_int_get (&n_blocked))
+    g_thread_yield ();
+  gst_harness_push_event (h, gst_event_new_flush_start ());
+  gst_pad_remove_probe (h->sinkpad, probe);
+  gst_harness_push_event (h, gst_event_new_flush_stop (TRUE));
+  out = stab_record_new (h);
+  gst_harness_push_event (h, segment_event (0));
+  stab_push_frames (h, 20, WINDOW);
+  fail_unless_equals_string (out->str, "segment f20 ");
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 /* identity lets one buffer pass and then fails. */
 GST_START_TEST (a_drain_obeys_the_flow_downstream)
 {
@@ -302,6 +363,8 @@ drain_suite (void)
   tcase_add_test (tc, the_position_is_that_of_the_last_frame_out);
   tcase_add_test (tc, a_drain_query_gives_upstream_its_frames_back);
   tcase_add_test (tc, a_flush_drops_what_is_held_and_begins_anew);
+  tcase_add_test (tc, a_flush_unblocks_a_frame_on_its_way);
+  tcase_add_test (tc, a_flush_unblocks_a_frame_that_the_clock_let_go);
   tcase_add_test (tc, a_drain_obeys_the_flow_downstream);
   return s;
 }

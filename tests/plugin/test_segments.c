@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT */
+/* Rates, directions and trick modes: what a segment says of the frames in it. */
+#include "stabharness.h"
+
+#define WINDOW 8
+#define STOP (G_GUINT64_CONSTANT (50) * FRAME_DURATION)
+
+/* A segment of frames 0 to 49. */
+static void
+push_segment (GstHarness * h, gdouble rate, GstSegmentFlags flags)
+{
+  GstSegment segment;
+
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.rate = rate;
+  segment.flags = flags;
+  segment.stop = STOP;
+  segment.position = rate > 0 ? 0 : STOP;
+  fail_unless (gst_harness_push_event (h, gst_event_new_segment (&segment)));
+}
+
+static GstClockTime
+position_of (GstHarness * h)
+{
+  GstQuery *query = gst_query_new_position (GST_FORMAT_TIME);
+  gint64 position;
+
+  fail_unless (gst_pad_peer_query (h->sinkpad, query));
+  gst_query_parse_position (query, NULL, &position);
+  gst_query_unref (query);
+  return position;
+}
+
+static const gdouble rates[] = { 0.25, 1, 4 };
+
+GST_START_TEST (the_window_is_full_at_any_rate)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  guint i;
+
+  push_segment (h, rates[__i__], GST_SEGMENT_FLAG_NONE);
+  stab_push_frames (h, 0, WINDOW - 1);
+  fail_unless_equals_int (gst_harness_buffers_in_queue (h), 0);
+  for (i = WINDOW - 1; i < 50; i++) {
+    stab_push_frames (h, i, 1);
+    stab_pull_frames (h, i - (WINDOW - 1), 1);
+  }
+  gst_harness_push_event (h, gst_event_new_eos ());
+  stab_pull_frames (h, 50 - (WINDOW - 1), WINDOW - 1);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (in_reverse_the_frames_and_the_position_go_back)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  gint i;
+
+  push_segment (h, -1, GST_SEGMENT_FLAG_NONE);
+  for (i = 49; i >= 0; i--) {
+    stab_push_frames (h, i, 1);
+    if (i + WINDOW - 1 < 50) {
+      stab_pull_frames (h, i + WINDOW - 1, 1);
+      fail_unless_equals_uint64 (position_of (h),
+          (i + WINDOW - 1) * FRAME_DURATION);
+    }
+  }
+  gst_harness_push_event (h, gst_event_new_eos ());
+  for (i = WINDOW - 2; i >= 0; i--) {
+    GstBuffer *buffer = gst_harness_pull (h);
+
+    fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer), i * FRAME_DURATION);
+    gst_buffer_unref (buffer);
+  }
+  fail_unless_equals_uint64 (position_of (h), 0);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+/* Each by itself, and framed as in normal playback: the region tells. */
+GST_START_TEST (key_frames_alone_leave_at_once)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW,
+      "crop-ratio", 0.8, NULL);
+  guint i;
+
+  push_segment (h, 8, GST_SEGMENT_FLAG_TRICKMODE
+      | GST_SEGMENT_FLAG_TRICKMODE_KEY_UNITS);
+  for (i = 0; i < 50; i += 12) {
+    GstBuffer *buffer = stab_frame_new (h, i);
+    GstVideoRegionOfInterestMeta *region;
+
+    gst_buffer_add_video_region_of_interest_meta (buffer, "face", 28, 20, 8, 8);
+    fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
+    buffer = gst_harness_try_pull (h);
+    fail_unless (buffer != NULL);
+    fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer), i * FRAME_DURATION);
+    region = gst_buffer_get_video_region_of_interest_meta (buffer);
+    fail_unless (region && region->x == 27 && region->y == 19
+        && region->w == 10 && region->h == 10);
+    gst_buffer_unref (buffer);
+  }
+  push_segment (h, 1, GST_SEGMENT_FLAG_NONE);
+  stab_push_frames (h, 0, WINDOW);
+  stab_pull_frames (h, 0, 1);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (a_segment_goes_downstream_as_it_came)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  GstSegment segment;
+  const GstSegment *seen;
+  GstEvent *event;
+
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.rate = 0.5;
+  segment.applied_rate = 2;
+  segment.base = 7 * GST_SECOND;
+  segment.offset = GST_MSECOND;
+  segment.start = segment.position = GST_SECOND;
+  segment.stop = 3 * GST_SECOND;
+  segment.time = 5 * GST_SECOND;
+  segment.duration = 9 * GST_SECOND;
+  gst_harness_push_event (h, gst_event_new_segment (&segment));
+  event = gst_pad_get_sticky_event (h->sinkpad, GST_EVENT_SEGMENT, 0);
+  gst_event_parse_segment (event, &seen);
+  fail_unless (gst_segment_is_equal (seen, &segment));
+  gst_event_unref (event);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+static Suite *
+segments_suite (void)
+{
+  Suite *s = suite_create ("segments");
+  TCase *tc = tcase_create ("segments");
+
+  suite_add_tcase (s, tc);
+  tcase_add_loop_test (tc, the_window_is_full_at_any_rate, 0,
+      G_N_ELEMENTS (rates));
+  tcase_add_test (tc, in_reverse_the_frames_and_the_position_go_back);
+  tcase_add_test (tc, key_frames_alone_leave_at_once);
+  tcase_add_test (tc, a_segment_goes_downstream_as_it_came);
+  return s;
+}
+
+GST_CHECK_MAIN (segments);

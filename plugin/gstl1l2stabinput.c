@@ -38,19 +38,26 @@ gst_l1l2_stab_input_frame (GstL1L2StabOutput * output,
   return ret;
 }
 
-/* Time goes on without a frame. The event keeps its place behind the frames that came before it. */
-static void
+/* Time goes on without a frame. The event keeps its place behind the frames that came before it. FALSE: it can go now.
+ * One without a duration, as when a file's picture ends before its sound, does not say when a frame comes: the sinks
+ * wait for those that are held. */
+static gboolean
 add_gap (GstL1L2StabOutput * output, GstEvent * gap)
 {
   GstClockTime position, duration;
 
   gst_event_parse_gap (gap, &position, &duration);
-  if (GST_CLOCK_TIME_IS_VALID (duration) && output->trans->segment.rate > 0)
+  if (!GST_CLOCK_TIME_IS_VALID (duration)) {
+    gst_l1l2_stab_output_drain (output);
+    return FALSE;
+  }
+  if (output->trans->segment.rate > 0)
     position += duration;
   gst_l1l2_stab_stream_add_event (&output->stream, gap);
   if (gst_l1l2_stab_output_hurry (output, gst_l1l2_stab_output_now (output),
           position) == GST_FLOW_OK)
     gst_l1l2_stab_output_push_ready (output);
+  return TRUE;
 }
 
 gboolean
@@ -60,6 +67,7 @@ gst_l1l2_stab_input_event (GstL1L2StabOutput * output, GstEvent * event)
 
   switch (GST_EVENT_TYPE (event)) {
     case GST_EVENT_STREAM_START:
+    case GST_EVENT_STREAM_GROUP_DONE:
     case GST_EVENT_SEGMENT_DONE:
     case GST_EVENT_EOS:
       gst_l1l2_stab_output_drain (output);
@@ -74,10 +82,7 @@ gst_l1l2_stab_input_event (GstL1L2StabOutput * output, GstEvent * event)
       gst_l1l2_stab_output_flush (output);
       return FALSE;
     case GST_EVENT_GAP:
-      if (is_empty)
-        return FALSE;
-      add_gap (output, event);
-      return TRUE;
+      return !is_empty && add_gap (output, event);
     default:
       if (is_empty || !GST_EVENT_IS_SERIALIZED (event))
         return FALSE;

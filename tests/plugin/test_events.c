@@ -98,6 +98,37 @@ GST_START_TEST (in_a_long_gap_the_frames_before_it_go)
 
 GST_END_TEST;
 
+/* As players tell the picture that it is over while the sound goes on: the end of the stream comes later, and not
+ * before the sink has a frame. */
+GST_START_TEST (at_the_end_of_its_group_a_stream_is_drained)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  GString *out;
+
+  stab_push_frames (h, 0, 3);
+  out = stab_record_new (h);
+  gst_harness_push_event (h, gst_event_new_stream_group_done (1));
+  fail_unless_equals_string (out->str, "f0 f1 f2 stream-group-done ");
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (a_gap_of_unknown_length_holds_no_frame)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  GString *out;
+
+  stab_push_frames (h, 0, 3);
+  out = stab_record_new (h);
+  gst_harness_push_event (h, gst_event_new_gap (3 * FRAME_DURATION,
+          GST_CLOCK_TIME_NONE));
+  fail_unless_equals_string (out->str, "f0 f1 f2 gap ");
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (an_event_out_of_band_overtakes_the_frames)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
@@ -168,6 +199,8 @@ events_suite (void)
   tcase_add_test (tc, an_event_with_no_frame_before_it_passes_at_once);
   tcase_add_test (tc, a_gap_stays_in_its_place_and_ends_no_window);
   tcase_add_test (tc, in_a_long_gap_the_frames_before_it_go);
+  tcase_add_test (tc, a_gap_of_unknown_length_holds_no_frame);
+  tcase_add_test (tc, at_the_end_of_its_group_a_stream_is_drained);
   tcase_add_test (tc, an_event_out_of_band_overtakes_the_frames);
   tcase_add_test (tc, a_tag_outlives_a_flush_and_a_custom_event_does_not);
   tcase_add_test (tc, quality_of_service_goes_upstream_and_drops_no_frame);

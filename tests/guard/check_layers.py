@@ -30,6 +30,7 @@ QUOTED = {
     'plugin': ['plugin'],
     'samples': ['samples', 'tests/support'],
     'tests/bench': ['tests/bench', 'tests/support', 'lib/src'],
+    'tests/clients': ['tests/clients'],
     'tests/lib': ['tests/lib', 'tests/support', 'lib/src'],
     'tests/plugin': ['tests/plugin', 'tests/support'],
     'tests/support': ['tests/support'],
@@ -39,7 +40,7 @@ QUOTED = {
 
 # What a header outside this tree is called, and who alone may include it.
 FOREIGN = [
-    (r'opencv', r'lib/src/vision_opencv\.cpp'),
+    (r'opencv', r'lib/src/vision_opencv\.cpp|tests/clients/opencv_.*'),
     (r'(osqp|qdldl|amd)\b', r'lib/src/qp_osqp\.c'),
     (r'(gst|glib|gio|gobject|gmodule)\b', r'(plugin|tests/plugin|samples)/.*'),
     (r'check\.h', r'tests/.*'),

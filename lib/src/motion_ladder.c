@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "motion_rows.h"
 #include "ransac_fit.h"
 
 /* What a camera does from one frame to the next; beyond it, the fit is wrong. */
@@ -13,6 +14,8 @@ static const double min_inlier_share = 0.2;
 static const double wider = 2.0, min_share_fallback = 0.5;
 /* Points of nothing but noise agree with a shift if it is wide enough; then they fill the circle around it evenly. */
 static const double max_spread = 0.5; /* rms of the inliers' residuals, of the threshold; evenly filled it is 0.71 */
+/* Where fewer agree, rows may have moved differently. */
+static const double most_agree = 0.7;
 /* Up again. */
 static const double plenty = 1.5;
 static const int good_frames = 3;
@@ -179,6 +182,10 @@ L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *
         const L1L2StabMotionModel model = (L1L2StabMotionModel)rung;
         const double threshold = (rung == L1L2STAB_MOTION_MODEL_TRANSLATION ? wider : 1.0) * l->threshold;
         r.inliers = l1l2_ransac(model, pairs, say, count, threshold, rng, inlier, &r.F);
+        if (rung == L1L2STAB_MOTION_MODEL_SIMILARITY && r.inliers < most_agree * count) {
+            const int in_rows = l1l2_rows_fit(pairs, say.votes, count, v->half_h, threshold, inlier, &r.F);
+            r.inliers = in_rows > 0 ? in_rows : r.inliers;
+        }
         if (!stands(l, model, v, pairs, count, inlier, &r) || !may_rise(l, model, r.inliers))
             continue;
         bool ambiguous;

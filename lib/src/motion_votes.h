@@ -2,8 +2,8 @@
 /*
  * Background, not subject: how much each track has to say when the camera's motion is decided.
  *
- *   Coverage   the frame is 8x6 cells, and the tracks of a cell share one vote: a textured walker has no more than the
- *              cells that it covers, however many corners it has.
+ *   Coverage   the frame is 8x6 cells, and the tracks of a cell share one vote: a textured walker has no more than
+ *              the cells that it covers, however many corners it has.
  *   Place      towards the sides and the top, cells count more: what surrounds the rest is the background.
  *   Time       tracks that have moved with the camera before count more, and so do cells in which they did.
  */

@@ -41,8 +41,8 @@ constexpr double kCornerQuality = 0.003;
 /* Cells in which no corner was chosen get a turn of their own, by their own strongest: else a burnt-in clock would
  * leave a dark scene none. */
 constexpr int kCellsX = 4, kCellsY = 3;
-/* The brightness of two pictures: a smaller change of contrast or mean (grey levels) is left to the tracking; a contrast
- * below the third tells nothing; and what a match has to bring, as part of the difference. */
+/* The brightness of two pictures: a smaller change of contrast or mean (grey levels) is left to the tracking; a
+ * contrast below the third tells nothing; and what a match has to bring, as part of the difference. */
 constexpr double kSameContrast = 0.08, kSameMean = 6.0, kFlatPicture = 2.0, kNearer = 0.7;
 /* Letterbox bars: no brighter than this, and flat but for what compression leaves. Grey levels. */
 constexpr int kBlack = 40, kFlat = 10;

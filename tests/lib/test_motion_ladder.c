@@ -145,6 +145,34 @@ START_TEST(a_motion_that_does_not_rise_above_the_noise_is_none)
 }
 END_TEST
 
+/* The rows' shift in a rolling shutter that shakes within the frame: two thirds of a wave. */
+static void shake_rows(double amplitude)
+{
+    for (int i = 0; i < COUNT; i++) {
+        const double phase = 2.1 * pairs[i].from.y / half_h;
+        pairs[i].to.x += amplitude * cos(phase + 1.0);
+        pairs[i].to.y += amplitude * sin(phase);
+    }
+}
+
+START_TEST(rows_that_moved_differently_are_no_subject)
+{
+    L1L2Ladder l = ladder_new(L1L2STAB_MOTION_MODEL_SIMILARITY);
+    setup();
+    for (int t = 0; t < 20; t++) {
+        place(0, COUNT, -1, -1, 1, 1, &camera, 0.3 * pixel);
+        shake_rows(5.0 * pixel);
+        const L1L2Rung r = measure(&l, COUNT);
+        ck_assert_int_eq(r.model, L1L2STAB_MODEL_SIMILARITY);
+        ck_assert_int_ge(r.inliers, COUNT * 9 / 10);
+    }
+    /* A subject shares its rows with the background. */
+    place(0, 100, -1, -1, 1, 1, &camera, 0.3 * pixel);
+    place(100, 100, -0.5, -0.8, 0.7, 0.9, &walker, 0.3 * pixel);
+    ck_assert_int_le(measure(&l, COUNT).inliers, 110);
+}
+END_TEST
+
 START_TEST(few_tracks_tell_a_translation_and_fewer_nothing)
 {
     L1L2Ladder l = ladder_new(L1L2STAB_MOTION_MODEL_SIMILARITY);
@@ -252,6 +280,7 @@ int main(void)
     tcase_add_test(tcase, of_two_motions_with_as_many_votes_neither_is_followed);
     tcase_add_test(tcase, two_depths_of_one_scene_are_no_rivals);
     tcase_add_test(tcase, a_motion_that_does_not_rise_above_the_noise_is_none);
+    tcase_add_test(tcase, rows_that_moved_differently_are_no_subject);
     tcase_add_test(tcase, few_tracks_tell_a_translation_and_fewer_nothing);
     tcase_add_test(tcase, the_model_does_not_flip_from_frame_to_frame);
     tcase_add_test(tcase, an_affine_motion_needs_tracks_all_over_the_frame);

@@ -17,8 +17,8 @@ enum { MAX_THREADS = 64 };
 
 struct L1L2Pool {
     pthread_mutex_t mutex;
-    pthread_cond_t work; /* parts can be taken, or the pool closes */
-    pthread_cond_t done; /* the last part is finished */
+    pthread_cond_t work; /* parts or the task can be taken, or the pool closes */
+    pthread_cond_t done; /* the last part or the task is finished */
     bool has_mutex, has_work, has_done;
 
     int helpers; /* threads beside the caller's */
@@ -29,6 +29,9 @@ struct L1L2Pool {
     int parts, next, unfinished;
     void (*part)(void *context, int index);
     void *context;
+    void (*task)(void *context); /* NULL: none waits to be begun */
+    void *task_context;
+    bool task_runs;
 };
 
 static int count_cores(void)
@@ -53,13 +56,29 @@ static void work(L1L2Pool *pool)
     }
 }
 
+/* Does the task, if it has not been begun. The mutex is held on entry and on return. */
+static void do_task(L1L2Pool *pool)
+{
+    if (!pool->task)
+        return;
+    void (*const task)(void *context) = pool->task;
+    pool->task = NULL;
+    pool->task_runs = true;
+    pthread_mutex_unlock(&pool->mutex);
+    task(pool->task_context);
+    pthread_mutex_lock(&pool->mutex);
+    pool->task_runs = false;
+    pthread_cond_signal(&pool->done);
+}
+
 static void *help(void *arg)
 {
     L1L2Pool *pool = arg;
     pthread_mutex_lock(&pool->mutex);
     while (!pool->closing) {
+        do_task(pool);
         work(pool);
-        if (!pool->closing)
+        if (!pool->closing && !pool->task)
             pthread_cond_wait(&pool->work, &pool->mutex);
     }
     pthread_mutex_unlock(&pool->mutex);
@@ -123,7 +142,7 @@ int l1l2_pool_threads(const L1L2Pool *pool)
 
 void l1l2_pool_run(L1L2Pool *pool, int parts, void (*part)(void *context, int index), void *context)
 {
-    if (pool->helpers == 0 || parts <= 1) {
+    if (!pool || pool->helpers == 0 || parts <= 1) {
         for (int i = 0; i < parts; i++)
             part(context, i);
         return;
@@ -137,6 +156,28 @@ void l1l2_pool_run(L1L2Pool *pool, int parts, void (*part)(void *context, int in
     pthread_cond_broadcast(&pool->work);
     work(pool);
     while (pool->unfinished > 0)
+        pthread_cond_wait(&pool->done, &pool->mutex);
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+void l1l2_pool_start(L1L2Pool *pool, void (*task)(void *context), void *context)
+{
+    if (pool->helpers == 0) {
+        task(context);
+        return;
+    }
+    pthread_mutex_lock(&pool->mutex);
+    pool->task = task;
+    pool->task_context = context;
+    pthread_cond_signal(&pool->work);
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+void l1l2_pool_join(L1L2Pool *pool)
+{
+    pthread_mutex_lock(&pool->mutex);
+    do_task(pool);
+    while (pool->task_runs)
         pthread_cond_wait(&pool->done, &pool->mutex);
     pthread_mutex_unlock(&pool->mutex);
 }

@@ -11,6 +11,7 @@ typedef struct L1L2Held {
     L1L2StabFrame frame;
     L1L2MotionResult motion;
     double F_px[9]; /* the motion in pixels */
+    double lambda, crop_ratio; /* as they were when the frame was pushed */
     int64_t solve_ns;
 } L1L2Held;
 

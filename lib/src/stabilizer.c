@@ -2,7 +2,8 @@
 /*
  * The public entry points and the state machine: Algorithm 1, one frame at a time.
  *
- *   push    motion.c: steps 1 and 2a, F_t     path.c: steps 2b and 3, C_t and B_t
+ *   push    motion.c: steps 1 and 2a, F_t, beside the caller: analysis.c
+ *           path.c: steps 2b and 3, C_t and B_t, once the motion is there: settle()
  *   pull    warp.c: step 5
  *
  * States: open -> finished (finish) -> open (reset). Frames wait in the ring from push to pull.
@@ -10,9 +11,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "analysis.h"
 #include "clock.h"
 #include "config.h"
 #include "fade.h"
+#include "frame.h"
+#include "info.h"
 #include "log.h"
 #include "mem.h"
 #include "path.h"
@@ -23,7 +27,8 @@ struct L1L2Stab {
     L1L2StabConfig cfg;
     const L1L2FormatInfo *format;
     int out_width, out_height;
-    L1L2Motion *motion;
+    L1L2Pool *pool;
+    L1L2Analysis *analysis;
     L1L2Path *path;
     L1L2Warp *warp;
     L1L2Ring ring;
@@ -34,6 +39,7 @@ struct L1L2Stab {
     uint64_t pulled;          /* frames since create or reset */
     L1L2Mat camera, smooth;   /* C_t and P_t of the last pulled frame relative to its path's first: for display only */
     L1L2Fade bypass;
+    double lambda, crop_ratio; /* of the frames that are pushed from now on */
     double diagonal_px;
 };
 
@@ -70,11 +76,11 @@ static L1L2StabResult build(L1L2Stab *s)
         .out_height = s->out_height,
         .chroma_site = cfg->chroma_site,
         .interpolation = cfg->interpolation,
-        .threads = cfg->threads,
+        .pool = s->pool,
     };
-    if (!l1l2_ring_init(&s->ring, cfg->window))
+    if (!s->pool || !l1l2_ring_init(&s->ring, cfg->window))
         return L1L2STAB_ERR_NOMEM;
-    L1L2StabResult result = l1l2_motion_create(&s->motion, &motion);
+    L1L2StabResult result = l1l2_analysis_create(&s->analysis, &motion, s->pool);
     if (result == L1L2STAB_OK)
         result = l1l2_path_create(&s->path, &path);
     if (result == L1L2STAB_OK)
@@ -96,6 +102,9 @@ L1L2StabResult l1l2stab_create(L1L2Stab **out, const L1L2StabConfig *cfg)
         return L1L2STAB_ERR_NOMEM;
     s->cfg = resolved;
     s->format = l1l2_format_info(resolved.format);
+    s->pool = l1l2_pool_create(resolved.threads);
+    s->lambda = resolved.lambda;
+    s->crop_ratio = resolved.crop_ratio;
     s->diagonal_px = hypot(resolved.width, resolved.height);
     s->bypass.length = L1L2STAB_BYPASS_FRAMES;
     l1l2_config_output_size(&resolved, &s->out_width, &s->out_height);
@@ -114,10 +123,11 @@ void l1l2stab_free(L1L2Stab **s)
 {
     if (!s || !*s)
         return;
+    l1l2_analysis_free((*s)->analysis); /* it may be reading a frame */
     l1l2_ring_clear(&(*s)->ring);
-    l1l2_motion_free((*s)->motion);
     l1l2_path_free((*s)->path);
     l1l2_warp_free((*s)->warp);
+    l1l2_pool_free((*s)->pool);
     l1l2_mem_free(*s);
     *s = NULL;
 }
@@ -126,47 +136,18 @@ void l1l2stab_reset(L1L2Stab *s)
 {
     if (!s)
         return;
+    l1l2_analysis_reset(s->analysis);
     l1l2_ring_drop_all(&s->ring);
-    l1l2_motion_reset(s->motion);
     l1l2_path_reset(s->path);
     s->finished = s->decided = false;
     s->hurried = 0;
     s->pulled = 0;
 }
 
-static bool planes_given(const L1L2Stab *s, const L1L2StabFrame *frame)
-{
-    for (int i = 0; i < s->format->planes; i++)
-        if (!frame->data[i]) {
-            l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR, "plane %d of a %s frame is NULL", i, s->format->name);
-            return false;
-        }
-    return true;
-}
-
-/* A similarity that can be inverted, as path.c needs it. */
-static bool motion_valid(const L1L2Stab *s, const double motion[9])
-{
-    L1L2Mat F, inverse;
-    memcpy(F.m, motion, sizeof F.m);
-    const bool valid = l1l2_mat_is_finite(&F) && l1l2_mat_inverse(F, &inverse) && F.m[6] == 0.0 && F.m[7] == 0.0 &&
-                       F.m[8] == 1.0 && F.m[0] == F.m[4] && F.m[1] == -F.m[3];
-    if (!valid)
-        l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR,
-                 "motion is not an invertible similarity [a -b x; b a y; 0 0 1] of finite numbers");
-    return valid;
-}
-
-static void export_px(const L1L2Stab *s, L1L2Mat m, double out[9])
-{
-    m = l1l2_mat_rescale(m, s->diagonal_px);
-    memcpy(out, m.m, sizeof m.m);
-}
-
 /* The frames between given motions are not tracked: a measured one after them starts from nothing. */
 static L1L2MotionResult given_motion(L1L2Stab *s, bool starts_path)
 {
-    l1l2_motion_reset(s->motion);
+    l1l2_analysis_reset(s->analysis);
     return (L1L2MotionResult){
         .F = l1l2_mat_identity(),
         .model = starts_path ? L1L2STAB_MODEL_NONE : L1L2STAB_MODEL_GIVEN,
@@ -174,16 +155,38 @@ static L1L2MotionResult given_motion(L1L2Stab *s, bool starts_path)
     };
 }
 
-/* The path is made of the motion that info tells, to the bit: whoever gives it back gets the same path. */
-static void settle_motion(const L1L2Stab *s, const L1L2StabFrame *in, L1L2Held *held)
+/* Steps 2b and 3 for the newest frame, whose motion is known. The path is made of the motion that info tells, to the
+ * bit: whoever gives it back gets the same path. given_px: that motion, if it was given. */
+static void extend_path(L1L2Stab *s, L1L2Held *held, const double *given_px)
 {
     L1L2MotionResult *motion = &held->motion;
     if (motion->model == L1L2STAB_MODEL_GIVEN)
-        memcpy(held->F_px, in->motion, sizeof held->F_px);
+        memcpy(held->F_px, given_px, sizeof held->F_px);
     else
-        export_px(s, motion->F, held->F_px);
+        l1l2_info_export(&motion->F, s->diagonal_px, held->F_px);
     memcpy(motion->F.m, held->F_px, sizeof held->F_px);
     motion->F = l1l2_mat_rescale(motion->F, 1.0 / s->diagonal_px);
+    const int64_t start_ns = l1l2_clock_ns();
+    l1l2_path_set_lambda(s->path, held->lambda);
+    l1l2_path_set_crop_ratio(s->path, held->crop_ratio);
+    l1l2_path_push(s->path, &motion->F, motion->model == L1L2STAB_MODEL_NONE);
+    l1l2_ring_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
+}
+
+/* Waits for the newest frame's motion, if it is being measured, and extends the path by it. An error is told once: the
+ * frame then starts a path, and the next call goes on. */
+static L1L2StabResult settle(L1L2Stab *s)
+{
+    if (!l1l2_analysis_is_open(s->analysis))
+        return L1L2STAB_OK;
+    L1L2Held *held = l1l2_ring_at(&s->ring, s->ring.count - 1);
+    const L1L2StabResult result = l1l2_analysis_take(s->analysis, &held->motion);
+    if (result != L1L2STAB_OK) {
+        l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR, "the motion of a frame: %s", l1l2stab_strerror(result));
+        held->motion = (L1L2MotionResult){.F = l1l2_mat_identity(), .model = L1L2STAB_MODEL_NONE};
+    }
+    extend_path(s, held, NULL);
+    return result;
 }
 
 L1L2StabResult l1l2stab_set_lambda(L1L2Stab *s, double lambda)
@@ -194,7 +197,7 @@ L1L2StabResult l1l2stab_set_lambda(L1L2Stab *s, double lambda)
     wanted.lambda = lambda;
     if (!l1l2_config_check_knobs(&wanted))
         return L1L2STAB_ERR_ARGUMENT;
-    l1l2_path_set_lambda(s->path, lambda);
+    s->lambda = lambda;
     return L1L2STAB_OK;
 }
 
@@ -206,7 +209,7 @@ L1L2StabResult l1l2stab_set_crop_ratio(L1L2Stab *s, double crop_ratio)
     wanted.crop_ratio = crop_ratio;
     if (!l1l2_config_check_knobs(&wanted))
         return L1L2STAB_ERR_ARGUMENT;
-    l1l2_path_set_crop_ratio(s->path, crop_ratio);
+    s->crop_ratio = crop_ratio;
     return L1L2STAB_OK;
 }
 
@@ -218,31 +221,31 @@ L1L2StabResult l1l2stab_set_bypass(L1L2Stab *s, int bypass)
     return L1L2STAB_OK;
 }
 
+static bool planes_given(const L1L2Stab *s, const L1L2StabFrame *frame)
+{
+    return l1l2_frame_has_planes(frame, s->format, &s->cfg.logger);
+}
+
 L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
 {
-    if (!s || !in || (!in->motion && !planes_given(s, in)) || (in->motion && !motion_valid(s, in->motion)))
+    if (!s || !in || !(in->motion ? l1l2_frame_has_motion(in, &s->cfg.logger) : planes_given(s, in)))
         return L1L2STAB_ERR_ARGUMENT;
     if (s->finished)
         return L1L2STAB_ERR_STATE;
     if (s->ring.count == s->ring.capacity)
         return L1L2STAB_AGAIN;
     const bool starts_path = (in->flags & L1L2STAB_FRAME_DISCONT) != 0 || s->ring.count + s->pulled == 0;
-    L1L2MotionResult motion;
-    L1L2StabResult result = L1L2STAB_OK;
-    if (in->motion)
-        motion = given_motion(s, starts_path);
-    else
-        result = l1l2_motion_push(s->motion, in->data[0], in->stride[0], starts_path, &motion);
-    if (result != L1L2STAB_OK) {
-        l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR, "push: %s", l1l2stab_strerror(result));
+    const L1L2StabResult result = settle(s);
+    if (result != L1L2STAB_OK)
         return result;
-    }
     L1L2Held *held = l1l2_ring_append(&s->ring);
-    *held = (L1L2Held){.frame = *in, .motion = motion};
-    settle_motion(s, in, held);
-    const int64_t start_ns = l1l2_clock_ns();
-    l1l2_path_push(s->path, &held->motion.F, motion.model == L1L2STAB_MODEL_NONE);
-    l1l2_ring_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
+    *held = (L1L2Held){.frame = *in, .lambda = s->lambda, .crop_ratio = s->crop_ratio};
+    if (in->motion) {
+        held->motion = given_motion(s, starts_path);
+        extend_path(s, held, in->motion);
+    } else {
+        l1l2_analysis_begin(s->analysis, in->data[0], in->stride[0], starts_path);
+    }
     return L1L2STAB_OK;
 }
 
@@ -254,6 +257,9 @@ L1L2StabResult l1l2stab_hurry(L1L2Stab *s, int frames)
         frames = s->ring.count;
     if (frames <= s->hurried)
         return L1L2STAB_OK;
+    const L1L2StabResult result = settle(s);
+    if (result != L1L2STAB_OK)
+        return result;
     const int64_t start_ns = l1l2_clock_ns();
     l1l2_path_hurry(s->path, s->decided ? frames - 1 : frames);
     l1l2_ring_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
@@ -265,6 +271,9 @@ L1L2StabResult l1l2stab_finish(L1L2Stab *s)
 {
     if (!s)
         return L1L2STAB_ERR_ARGUMENT;
+    const L1L2StabResult result = settle(s);
+    if (result != L1L2STAB_OK)
+        return result;
     if (!s->finished && s->ring.count > 0) {
         const int64_t start_ns = l1l2_clock_ns();
         l1l2_path_finish(s->path);
@@ -304,60 +313,36 @@ static L1L2Mat warp_map(const L1L2Stab *s, const L1L2Mat *B, double crop_ratio)
     return l1l2_mat_mul(l1l2_mat_rescale(*B, s->diagonal_px), l1l2_mat_diagonal(zoom, zoom));
 }
 
-static void describe(const L1L2Stab *s, const L1L2Held *held, const L1L2Mat *map, L1L2StabInfo *info)
-{
-    const L1L2PathFrame *f = &s->next;
-    *info = (L1L2StabInfo){
-        .index = s->pulled,
-        .path_index = f->path_index,
-        .lambda = f->lambda,
-        .crop_ratio = f->crop_ratio,
-        .tracks = held->motion.tracks,
-        .inliers = held->motion.inliers,
-        .quality = held->motion.quality,
-        .solver_iterations = f->report.predictor_iterations + f->report.osqp_iterations,
-        .solver = f->report.decided_by,
-        .solver_bound = f->report.bound,
-        .solver_residual = {f->report.osqp_primal_residual, f->report.osqp_dual_residual},
-        .model = held->motion.model,
-        .stage_ns = {held->motion.scale_ns, held->motion.track_ns, held->motion.fit_ns, held->solve_ns, 0},
-    };
-    memcpy(info->F, held->F_px, sizeof held->F_px);
-    export_px(s, f->B, info->B);
-    export_px(s, f->S, info->S);
-    export_px(s, s->camera, info->C);
-    export_px(s, s->smooth, info->P);
-    memcpy(info->warp, map->m, sizeof map->m);
-    if (f->path_index == 0)
-        info->flags |= L1L2STAB_INFO_PATH_START;
-    if (info->model == L1L2STAB_MODEL_IDENTITY || info->model == L1L2STAB_MODEL_PREDICTED)
-        info->flags |= L1L2STAB_INFO_MOTION_LOST;
-    if (f->fallback)
-        info->flags |= L1L2STAB_INFO_PATH_FALLBACK;
-    if (f->early)
-        info->flags |= L1L2STAB_INFO_EARLY;
-}
-
-/* Takes the oldest frame's path out of path.c, once, and carries C_t and P_t on. */
-static void fetch_path(L1L2Stab *s)
+/* Takes the oldest frame's path out of path.c, once, and carries C_t and P_t on. Mostly it was decided long ago, and
+ * the newest frame's motion can wait. */
+static L1L2StabResult fetch_path(L1L2Stab *s)
 {
     if (s->decided)
-        return;
+        return L1L2STAB_OK;
     s->decided = l1l2_path_pull(s->path, &s->next);
+    if (!s->decided) {
+        const L1L2StabResult result = settle(s);
+        if (result != L1L2STAB_OK)
+            return result;
+        s->decided = l1l2_path_pull(s->path, &s->next);
+    }
     s->camera = s->next.path_index == 0 ? l1l2_mat_identity() : l1l2_mat_mul(s->camera, s->next.F);
     s->smooth = l1l2_mat_mul(s->camera, s->next.B);
+    return L1L2STAB_OK;
 }
 
 L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info)
 {
     if (!s)
         return L1L2STAB_ERR_ARGUMENT;
-    const L1L2StabResult ready = readiness(s);
+    L1L2StabResult ready = readiness(s);
     if (ready != L1L2STAB_OK)
         return ready;
     if (out && (!planes_given(s, out) || !planes_given(s, &l1l2_ring_at(&s->ring, 0)->frame)))
         return L1L2STAB_ERR_ARGUMENT;
-    fetch_path(s);
+    ready = fetch_path(s);
+    if (ready != L1L2STAB_OK)
+        return ready;
     const L1L2Held *held = l1l2_ring_at(&s->ring, 0);
     const L1L2Mat stable = warp_map(s, &s->next.B, s->next.crop_ratio), untouched = l1l2_mat_identity();
     const double bypass = l1l2_fade_next(&s->bypass, s->next.path_index == 0);
@@ -370,7 +355,11 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
         out->opaque = held->frame.opaque;
     }
     if (info) {
-        describe(s, held, &map, info);
+        l1l2_info_describe(info, held, &s->next, s->diagonal_px);
+        info->index = s->pulled;
+        l1l2_info_export(&s->camera, s->diagonal_px, info->C);
+        l1l2_info_export(&s->smooth, s->diagonal_px, info->P);
+        memcpy(info->warp, map.m, sizeof map.m);
         info->bypass = bypass;
         info->stage_ns[L1L2STAB_STAGE_WARP] = out ? l1l2_clock_ns() - start_ns : 0;
     }
@@ -383,7 +372,7 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
 
 int l1l2stab_threads(const L1L2Stab *s)
 {
-    return s ? l1l2_warp_threads(s->warp) : 0;
+    return s ? l1l2_pool_threads(s->pool) : 0;
 }
 
 const char *l1l2stab_simd(void)

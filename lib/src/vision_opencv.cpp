@@ -2,8 +2,8 @@
 /*
  * The other side of vision.h: OpenCV. The only C++ file, and the only one that knows OpenCV.
  *
- * No exception leaves it, and none of OpenCV's globals (threads, random numbers) is touched. OpenCV may track points in
- * parallel; each point is on its own, so the result does not depend on the number of threads.
+ * No exception leaves it, and none of OpenCV's globals (threads, random numbers) is touched. All of it runs on
+ * the caller's thread.
  */
 #include "vision.h"
 
@@ -74,7 +74,8 @@ template <class Body>
 L1L2StabResult guard(const L1L2StabLogger *log, Body &&body) noexcept
 {
     try {
-        body();
+        /* What is nested in a parallel region OpenCV does on this thread alone: the cores have the warp to do. */
+        cv::parallel_for_(cv::Range(0, 1), [&](const cv::Range &) { body(); });
         return L1L2STAB_OK;
     } catch (const std::bad_alloc &) {
         return L1L2STAB_ERR_NOMEM;

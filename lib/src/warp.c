@@ -6,7 +6,6 @@
 #include "warp.h"
 
 #include "mem.h"
-#include "pool.h"
 #include "warp_coords.h"
 #include "warp_kernel.h"
 #include "warp_packed.h"
@@ -20,7 +19,6 @@ enum {
 struct L1L2Warp {
     L1L2WarpConfig cfg;
     L1L2WarpKernel kernel;
-    L1L2Pool *pool;
     const L1L2FormatInfo *packed; /* if frames are packed 4:2:2; then cfg.format is that of their planes */
     L1L2WarpPlanes in, out;
 };
@@ -64,8 +62,7 @@ L1L2StabResult l1l2_warp_create(L1L2Warp **out, const L1L2WarpConfig *cfg)
         return L1L2STAB_ERR_NOMEM;
     w->cfg = *cfg;
     l1l2_warp_kernel_init(&w->kernel, cfg->interpolation);
-    w->pool = l1l2_pool_create(cfg->threads);
-    if (!w->pool || !prepare_packed(w)) {
+    if (!prepare_packed(w)) {
         l1l2_warp_free(w);
         return L1L2STAB_ERR_NOMEM;
     }
@@ -79,13 +76,7 @@ void l1l2_warp_free(L1L2Warp *w)
         return;
     l1l2_warp_packed_free(&w->in);
     l1l2_warp_packed_free(&w->out);
-    l1l2_pool_free(w->pool);
     l1l2_mem_free(w);
-}
-
-int l1l2_warp_threads(const L1L2Warp *w)
-{
-    return l1l2_pool_threads(w->pool);
 }
 
 const char *l1l2_warp_simd(void)
@@ -161,7 +152,7 @@ static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *co
         plane->bands = (plane->height + BAND_ROWS - 1) / BAND_ROWS;
         bands += plane->bands;
     }
-    l1l2_pool_run(w->pool, bands, render_part, &job);
+    l1l2_pool_run(cfg->pool, bands, render_part, &job);
 }
 
 void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
@@ -171,7 +162,7 @@ void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const 
         render_planes(w, map, src, src_stride, dst, dst_stride);
         return;
     }
-    l1l2_warp_packed_split(w->pool, w->packed, src[0], src_stride[0], &w->in);
+    l1l2_warp_packed_split(w->cfg.pool, w->packed, src[0], src_stride[0], &w->in);
     render_planes(w, map, (const uint8_t *const *)w->in.data, w->in.stride, w->out.data, w->out.stride);
-    l1l2_warp_packed_merge(w->pool, w->packed, &w->out, dst[0], dst_stride[0]);
+    l1l2_warp_packed_merge(w->cfg.pool, w->packed, &w->out, dst[0], dst_stride[0]);
 }

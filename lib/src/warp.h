@@ -16,6 +16,7 @@
 
 #include "format.h"
 #include "geom.h"
+#include "pool.h"
 #include "warp_mesh.h"
 
 typedef struct L1L2Warp L1L2Warp;
@@ -32,7 +33,7 @@ typedef struct L1L2WarpConfig {
     int out_width, out_height; /* pixels */
     L1L2StabChromaSite chroma_site;
     L1L2StabInterpolation interpolation;
-    int threads;               /* 0 = as many as there are cores */
+    L1L2Pool *pool;            /* whose threads work; must outlive the object. NULL: the caller's thread alone */
     bool plain;                /* for tests and benchmarks: plain C, whatever the processor has. The same bytes */
 } L1L2WarpConfig;
 
@@ -44,8 +45,7 @@ void l1l2_warp_free(L1L2Warp *w);
 void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
                       uint8_t *const dst[4], const ptrdiff_t dst_stride[4]);
 
-/* How many threads render, and the instruction set of the inner loops that they use. */
-int l1l2_warp_threads(const L1L2Warp *w);
+/* The instruction set of the inner loops. */
 const char *l1l2_warp_simd(void);
 
 #endif

@@ -88,7 +88,7 @@ static void bench_kernel(const L1L2WarpConfig *cfg, const char *name, bool by_me
     }
     char what[64];
     snprintf(what, sizeof what, "%s%s%s, %d thread%s", name, by_mesh ? ", mesh" : "", cfg->plain ? ", plain C" : "",
-             cfg->threads, cfg->threads > 1 ? "s" : "");
+             cfg->pool ? 2 : 1, cfg->pool ? "s" : "");
     print_times(what, ms);
     l1l2_warp_mesh_clear(&mesh);
     l1l2_warp_free(warp);
@@ -99,17 +99,19 @@ static void bench(L1L2StabFormat id, int width, int height)
     static const char *const kernels[] = {"bilinear", "bicubic", "lanczos"};
     const L1L2FormatInfo *format = l1l2_format_info(id);
     Picture src = make_picture(format, width, height), dst = make_picture(format, width, height);
+    L1L2Pool *pool = l1l2_pool_create(2);
     printf("%s %dx%d, ms a frame\n", format->name, width, height);
     bench_copy(format, &src, &dst);
     for (int k = 0; k < 3; k++)
         for (int way = 0; way < 4; way++) {
             const L1L2WarpConfig cfg = {.format = format, .in_width = width, .in_height = height, .out_width = width,
                                         .out_height = height, .interpolation = (L1L2StabInterpolation)k,
-                                        .threads = way % 2 + 1, .plain = way / 2};
+                                        .pool = way % 2 ? pool : NULL, .plain = way / 2};
             bench_kernel(&cfg, kernels[k], false, &src, &dst);
             if (way == 0)
                 bench_kernel(&cfg, kernels[k], true, &src, &dst);
         }
+    l1l2_pool_free(pool);
     free_picture(&src);
     free_picture(&dst);
 }

@@ -16,7 +16,7 @@ LEAF = {'clock', 'cut', 'dissolve', 'fade', 'format', 'geom', 'log', 'mem', 'poo
 
 # A group's modules, and the groups that it may include besides itself and the leaves. path_qp.c is of module path.
 GROUPS = {
-    'stabilizer': ({'stabilizer', 'config', 'ring'}, {'motion', 'path', 'warp'}),
+    'stabilizer': ({'stabilizer', 'analysis', 'config', 'frame', 'info', 'ring'}, {'motion', 'path', 'warp'}),
     'motion': ({'motion', 'ransac'}, {'vision'}),
     'path': ({'path', 'plan', 'crop'}, {'qp'}),
     'warp': ({'warp'}, set()),

@@ -69,11 +69,10 @@ START_TEST(a_running_instance_takes_no_memory)
     SynthConfig scene = synth_defaults();
     scene.width = cfg.width, scene.height = cfg.height;
     Synth *synth = synth_new(&scene);
-    SynthPicture in = synth_picture_new(cfg.format, cfg.width, cfg.height);
+    enum { FRAMES = 40 };
+    SynthPicture in[FRAMES];
     SynthPicture out = synth_picture_new(cfg.format, cfg.width, cfg.height);
     L1L2StabFrame frame = {0}, picture = {0};
-    memcpy(frame.data, in.data, sizeof frame.data);
-    memcpy(frame.stride, in.stride, sizeof frame.stride);
     memcpy(picture.data, out.data, sizeof picture.data);
     memcpy(picture.stride, out.stride, sizeof picture.stride);
     L1L2Stab *s;
@@ -81,8 +80,11 @@ START_TEST(a_running_instance_takes_no_memory)
     countdown = -1;
     ck_assert_int_eq(l1l2stab_create(&s, &cfg), L1L2STAB_OK);
     const int after_create = alive;
-    for (int t = 0; t < 40; t++) {
-        synth_render(synth, t, cfg.format, in.data, in.stride);
+    for (int t = 0; t < FRAMES; t++) {
+        in[t] = synth_picture_new(cfg.format, cfg.width, cfg.height);
+        synth_render(synth, t, cfg.format, in[t].data, in[t].stride);
+        memcpy(frame.data, in[t].data, sizeof frame.data);
+        memcpy(frame.stride, in[t].stride, sizeof frame.stride);
         ck_assert_int_eq(l1l2stab_push(s, &frame), L1L2STAB_OK);
         ck_assert_int_ge(l1l2stab_pull(s, &picture, NULL), L1L2STAB_OK);
         ck_assert_int_eq(alive, after_create);
@@ -90,7 +92,8 @@ START_TEST(a_running_instance_takes_no_memory)
     l1l2stab_free(&s);
     ck_assert_int_eq(alive, 0);
     l1l2_mem_set_hook(NULL);
-    synth_picture_free(&in);
+    for (int t = 0; t < FRAMES; t++)
+        synth_picture_free(&in[t]);
     synth_picture_free(&out);
     synth_free(synth);
 }

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What a viewer sees: the shake that is left against the truth, and the rendered picture against an ideal camera's. */
+#include <pthread.h>
+
 #include "stabilizer_fixture.h"
 
 /* RMS of the second difference of the crop window's corner path, px: of the truth, as filmed and as given out. */
@@ -99,6 +101,63 @@ START_TEST(the_number_of_threads_changes_no_bit)
 }
 END_TEST
 
+typedef struct Listener {
+    pthread_t caller;
+    int heard, elsewhere;
+} Listener;
+
+static void listen_to(void *cookie, L1L2StabLogLevel level, const char *message)
+{
+    Listener *listener = cookie;
+    listener->heard++;
+    listener->elsewhere += !pthread_equal(pthread_self(), listener->caller);
+}
+
+/* Grey frames: the tracking, which has a thread of its own, says that it is lost. */
+START_TEST(messages_come_on_the_callers_thread)
+{
+    Listener listener = {.caller = pthread_self()};
+    L1L2StabConfig cfg = small_config(8);
+    cfg.threads = 3;
+    cfg.logger = (L1L2StabLogger){listen_to, &listener, L1L2STAB_LOG_TRACE};
+    Clip *clip = new_clip(12, cfg.format);
+    for (int t = 4; t < 12; t++)
+        memset(clip->picture[t].data[0], 128, clip->picture[t].size);
+    L1L2Stab *s = create(&cfg);
+    const int before = listener.heard;
+    ck_assert_int_eq(stabilize(s, clip, NULL, NULL), 12);
+    ck_assert_int_gt(listener.heard, before);
+    ck_assert_int_eq(listener.elsewhere, 0);
+    l1l2stab_free(&s);
+    free_clip(clip);
+}
+END_TEST
+
+/* reset and free wait for a frame that is being read. */
+START_TEST(a_frame_is_released_only_when_nobody_reads_it_any_more)
+{
+    L1L2StabConfig cfg = small_config(8);
+    cfg.threads = 3;
+    Clip *clip = new_clip(8, cfg.format);
+    L1L2Stab *s = create(&cfg);
+    for (int round = 0; round < 40; round++) {
+        const int t = round % 8;
+        const L1L2StabFrame in = frame_of(clip, t);
+        ck_assert_int_eq(l1l2stab_push(s, &in), L1L2STAB_OK);
+        if (round % 2) {
+            l1l2stab_reset(s);
+        } else {
+            l1l2stab_free(&s);
+            s = create(&cfg);
+        }
+        ck_assert_int_eq(clip->released[t], round / 8 + 1);
+        memset(clip->picture[t].data[0], round, clip->picture[t].size); /* a thread sanitizer sees who reads it yet */
+    }
+    l1l2stab_free(&s);
+    free_clip(clip);
+}
+END_TEST
+
 START_TEST(every_format_is_stabilised_alike)
 {
     L1L2StabInfo reference[12], info[12];
@@ -132,6 +191,8 @@ int main(void)
     tcase_add_test(tcase, the_true_shake_falls_to_a_tenth);
     tcase_add_test(tcase, the_picture_is_what_a_steady_camera_would_have_filmed);
     tcase_add_test(tcase, the_number_of_threads_changes_no_bit);
+    tcase_add_test(tcase, messages_come_on_the_callers_thread);
+    tcase_add_test(tcase, a_frame_is_released_only_when_nobody_reads_it_any_more);
     tcase_add_test(tcase, every_format_is_stabilised_alike);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);

@@ -136,6 +136,79 @@ START_TEST(zero_threads_means_the_cores_there_are)
 }
 END_TEST
 
+typedef struct Task {
+    pthread_t caller;
+    pthread_barrier_t *barrier; /* NULL: nobody is met */
+    int calls;
+    bool elsewhere;
+} Task;
+
+static void do_task(void *context)
+{
+    Task *task = context;
+    if (task->barrier)
+        pthread_barrier_wait(task->barrier);
+    task->calls++;
+    task->elsewhere = !pthread_equal(pthread_self(), task->caller);
+}
+
+/* Plain memory again: join must order the task before what follows it. */
+START_TEST(a_task_is_done_once_when_it_is_joined_whatever_the_threads)
+{
+    L1L2Pool *pool = l1l2_pool_create(_i + 1);
+    for (int round = 0; round < 500; round++) {
+        Task task = {.caller = pthread_self()};
+        atomic_int counts[MAX_PARTS] = {0};
+        l1l2_pool_start(pool, do_task, &task);
+        if (round % 2)
+            l1l2_pool_run(pool, 20, count, counts);
+        l1l2_pool_join(pool);
+        ck_assert_int_eq(task.calls, 1);
+        for (int i = 0; round % 2 && i < 20; i++)
+            ck_assert_int_eq(atomic_load(&counts[i]), 1);
+        l1l2_pool_join(pool); /* nothing left */
+        ck_assert_int_eq(task.calls, 1);
+    }
+    l1l2_pool_free(pool);
+}
+END_TEST
+
+START_TEST(a_pool_of_one_does_the_task_at_once)
+{
+    L1L2Pool *pool = l1l2_pool_create(1);
+    Task task = {.caller = pthread_self()};
+    l1l2_pool_start(pool, do_task, &task);
+    ck_assert_int_eq(task.calls, 1);
+    ck_assert(!task.elsewhere);
+    l1l2_pool_join(pool);
+    l1l2_pool_free(pool);
+}
+END_TEST
+
+static void meet_once(void *context, int index)
+{
+    if (index == 0)
+        pthread_barrier_wait(context);
+}
+
+/* Ends only if a run goes on beside the task. */
+START_TEST(a_run_and_a_task_go_on_at_the_same_time)
+{
+    pthread_barrier_t barrier;
+    pthread_barrier_init(&barrier, NULL, 2);
+    L1L2Pool *pool = l1l2_pool_create(2);
+    for (int round = 0; round < 20; round++) {
+        Task task = {.caller = pthread_self(), .barrier = &barrier};
+        l1l2_pool_start(pool, do_task, &task);
+        l1l2_pool_run(pool, 5, meet_once, &barrier);
+        l1l2_pool_join(pool);
+        ck_assert(task.elsewhere);
+    }
+    l1l2_pool_free(pool);
+    pthread_barrier_destroy(&barrier);
+}
+END_TEST
+
 static void *refuse(size_t number, size_t size)
 {
     return NULL;
@@ -161,6 +234,9 @@ int main(void)
     tcase_add_test(tc, as_many_parts_run_at_once_as_there_are_threads);
     tcase_add_test(tc, signals_are_left_to_the_programs_own_threads);
     tcase_add_test(tc, zero_threads_means_the_cores_there_are);
+    tcase_add_loop_test(tc, a_task_is_done_once_when_it_is_joined_whatever_the_threads, 0, 4);
+    tcase_add_test(tc, a_pool_of_one_does_the_task_at_once);
+    tcase_add_test(tc, a_run_and_a_task_go_on_at_the_same_time);
     tcase_add_test(tc, no_memory_gives_no_pool);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);

@@ -249,10 +249,11 @@ START_TEST(the_bytes_do_not_depend_on_threads_or_processor)
     L1L2WarpConfig cfg = warp_config(&src, &one);
     warp_picture_by(&cfg, &map, &src, &one);
     for (int way = 1; way < 4; way++) {
-        cfg.threads = way % 2 ? 3 : 1;
+        cfg.pool = way % 2 ? l1l2_pool_create(3) : NULL;
         cfg.plain = way / 2;
         warp_picture_by(&cfg, &map, &src, &other);
         assert_same_picture(&one, &other);
+        l1l2_pool_free(cfg.pool);
     }
     l1l2_warp_mesh_clear(&mesh);
     picture_free(&src);

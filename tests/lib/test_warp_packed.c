@@ -47,7 +47,7 @@ START_TEST(packed_pictures_are_warped_as_their_planes)
             pack(&planes, &src, _i);
             warp_picture(&cfg, &map, &planes, &expected);
             cfg.format = src.format;
-            cfg.threads = 2;
+            cfg.pool = l1l2_pool_create(2);
             warp_picture(&cfg, &map, &src, &dst);
             for (int i = 0; i < 3; i++)
                 for (int v = 0; v < expected.plane[i].height; v++)
@@ -55,6 +55,7 @@ START_TEST(packed_pictures_are_warped_as_their_planes)
                         if (*packed_sample(&dst, _i, i, u, v) != *sample(&expected, i, u, v))
                             ck_abort_msg("%s plane %d (%d, %d)", src.format->name, i, u, v);
             assert_guards_untouched(&dst);
+            l1l2_pool_free(cfg.pool);
             picture_free(&planes);
             picture_free(&expected);
             picture_free(&src);

@@ -126,7 +126,6 @@ static inline L1L2WarpConfig warp_config(const Picture *src, const Picture *dst)
         .out_height = dst->height,
         .chroma_site = L1L2STAB_CHROMA_SITE_LEFT,
         .interpolation = L1L2STAB_INTERPOLATION_BICUBIC,
-        .threads = 1,
     };
 }
 

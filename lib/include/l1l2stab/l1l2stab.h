@@ -207,7 +207,7 @@ typedef struct L1L2StabConfig {
     L1L2StabInterpolation interpolation; /* default BICUBIC */
     L1L2StabOutputSize output_size; /* default INPUT */
     int analysis_size;             /* longer side of the picture that is tracked, pixels, [128, 4096], default 640 */
-    int threads;                   /* for the warp, [0, 64]; 0 = as many as there are cores. Default 0 */
+    int threads;                   /* that work, the caller's included, [0, 64]; 0 = one a core. Default 0 */
     uint64_t seed;                 /* of RANSAC's draws. Default 1 */
     L1L2StabLogger logger;         /* default: silent */
     double weights[3];             /* of |DP|, |D2P|, |D3P|, (0, 1000]; default 1, 1, 1 (eq. 5); G2011 has 10, 1, 100 */
@@ -299,9 +299,11 @@ L1L2STAB_API L1L2StabResult l1l2stab_config_output_size(const L1L2StabConfig *cf
  * reason has been logged. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_create(L1L2Stab **out, const L1L2StabConfig *cfg);
 
-/* Hand over the next frame: measures its motion.
+/* Hand over the next frame. Its motion is measured, with `threads` > 1 beside the caller: tracking of this frame and
+ * rendering of the one that is pulled next overlap.
  * OK: the library reads in->data until it calls in->release. AGAIN: `window` frames are held, pull first.
- * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. */
+ * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. An error may be that
+ * of the frame before, whose motion was not to be had: it is told once, by the next call, and that frame starts a path. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in);
 
 /* lambda and crop_ratio of the frames that are pushed from now on; ranges as in the config. The crop moves

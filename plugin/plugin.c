@@ -16,10 +16,18 @@
  *
  * #l1l2stab:lambda and #l1l2stab:crop-ratio may be changed, or controlled by
  * stream time, while the stream runs: they apply to the frames that come in
- * from then on; the crop moves by at most 0.005 a frame. The other properties
+ * from then on; the crop moves by at most 0.005 a frame. #l1l2stab:bypass
+ * applies to the frames that go out, at once but softly. The other properties
  * take effect with the next caps, or when the element is started again; so does
  * the size that crop-ratio gives with output-size=crop. Interlaced video has to
  * be deinterlaced first.
+ *
+ * Every frame carries a custom meta "GstL1L2StabMeta" with the maps from its
+ * picture to the source frame ("to-source") and back ("from-source"), in pixels
+ * from the top left corner: nine doubles each, row by row. With
+ * #l1l2stab:post-messages the element posts a message "l1l2stab-frame" for each
+ * frame. docs/control.md describes all fields of these and of #l1l2stab:stats,
+ * docs/motion-file.md the files of #l1l2stab:motion-in and #l1l2stab:motion-out.
  *
  * ## Example launch lines
  * |[

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The way from stabilized to untouched and back, in spite of the delay; and motions that are given back. */
 #include "fade.h"
+#include "format.h"
 #include "stabilizer_fixture.h"
 
 enum { WINDOW = 8, FRAMES = 100 };
@@ -122,6 +123,54 @@ START_TEST(no_sample_leaves_the_source_on_the_way)
 }
 END_TEST
 
+/* A frame of noise in the bits that the format has. */
+static void fill_noise(const L1L2FormatInfo *info, uint8_t *bytes, size_t size)
+{
+    uint32_t state = 1;
+    for (size_t i = 0; i < size; i += 2) {
+        state = state * 1664525u + 1013904223u;
+        const unsigned noise = state >> 16;
+        const unsigned value = info->depth > 8 ? (noise & ((1u << info->depth) - 1)) << info->shift : noise;
+        bytes[i] = value & 255, bytes[i + 1] = value >> 8;
+    }
+}
+
+START_TEST(an_untouched_frame_is_the_source_byte_for_byte_in_every_format)
+{
+    enum { W = 67, H = 49, STRIDE = W * 8 + 8, PLANE = STRIDE * H };
+    static uint8_t source[4 * PLANE], picture[4 * PLANE];
+    int formats = 0;
+    for (int format = 1; format < 100; format++) {
+        const L1L2FormatInfo *info = l1l2_format_info((L1L2StabFormat)format);
+        if (!info)
+            continue;
+        L1L2StabConfig cfg = small_config(4);
+        cfg.format = info->format, cfg.height = H;
+        cfg.width = info->plane[0].log2_sub_x ? W - 1 : W; /* packed 4:2:2: of half a pair one is nothing */
+        cfg.interpolation = (L1L2StabInterpolation)(format % 3);
+        L1L2StabFrame in = {.stride = {STRIDE, STRIDE, STRIDE, STRIDE}}, out = in;
+        for (int p = 0; p < info->planes; p++)
+            in.data[p] = source + p * PLANE, out.data[p] = picture + p * PLANE;
+        fill_noise(info, source, sizeof source);
+        L1L2Stab *s = create(&cfg);
+        l1l2stab_set_bypass(s, 1);
+        ck_assert_int_eq(l1l2stab_push(s, &in), L1L2STAB_OK);
+        l1l2stab_finish(s);
+        ck_assert_int_eq(l1l2stab_pull(s, &out, NULL), L1L2STAB_OK);
+        for (int p = 0; p < info->planes; p++) {
+            const size_t bytes = (size_t)l1l2_plane_size(cfg.width, info->plane[p].log2_sub_x) *
+                                 (size_t)(info->plane[p].components * l1l2_format_bytes(info));
+            for (int y = 0; y < l1l2_plane_size(H, info->plane[p].log2_sub_y); y++)
+                ck_assert_msg(memcmp(in.data[p] + y * STRIDE, out.data[p] + y * STRIDE, bytes) == 0,
+                              "%s: plane %d, row %d", info->name, p, y);
+        }
+        l1l2stab_free(&s);
+        formats++;
+    }
+    ck_assert_int_ge(formats, 13);
+}
+END_TEST
+
 START_TEST(motions_that_are_given_back_make_the_same_path_to_the_bit)
 {
     L1L2StabConfig cfg = small_config(WINDOW);
@@ -159,6 +208,7 @@ int main(void)
     TCase *tc = tcase_create("bypass");
     tcase_add_test(tc, a_fade_is_exact_at_both_ends_and_never_jumps);
     tcase_add_test(tc, a_bypass_is_at_once_and_soft_and_leaves_the_path_alone);
+    tcase_add_test(tc, an_untouched_frame_is_the_source_byte_for_byte_in_every_format);
     tcase_add_loop_test(tc, no_sample_leaves_the_source_on_the_way, L1L2STAB_OUTPUT_SIZE_INPUT,
                         L1L2STAB_OUTPUT_SIZE_CROP + 1);
     tcase_add_test(tc, motions_that_are_given_back_make_the_same_path_to_the_bit);

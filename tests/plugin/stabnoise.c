@@ -40,7 +40,7 @@ stab_noise_config (L1L2StabConfig * config, gint window)
 void
 stab_noise_infos (gint window, guint n, L1L2StabInfo * infos)
 {
-  guint8 *pixels = g_malloc (NOISE_WIDTH * NOISE_HEIGHT);
+  guint8 *pictures = g_malloc (n * NOISE_WIDTH * NOISE_HEIGHT);
   L1L2StabConfig config;
   L1L2Stab *stab = NULL;
   guint i, pulled = 0;
@@ -50,9 +50,8 @@ stab_noise_infos (gint window, guint n, L1L2StabInfo * infos)
   for (i = 0; i < n; i++) {
     L1L2StabFrame frame = { 0 };
 
-    /* Nothing is rendered: the pixels are only looked at by push(). */
-    stab_noise_fill (pixels, i);
-    frame.data[0] = pixels;
+    frame.data[0] = pictures + i * NOISE_WIDTH * NOISE_HEIGHT;
+    stab_noise_fill (frame.data[0], i);
     frame.stride[0] = NOISE_WIDTH;
     fail_unless_equals_int (l1l2stab_push (stab, &frame), L1L2STAB_OK);
     if (l1l2stab_pull (stab, NULL, &infos[pulled]) == L1L2STAB_OK)
@@ -63,7 +62,7 @@ stab_noise_infos (gint window, guint n, L1L2StabInfo * infos)
     fail_unless_equals_int (l1l2stab_pull (stab, NULL, &infos[pulled++]),
         L1L2STAB_OK);
   l1l2stab_free (&stab);
-  g_free (pixels);
+  g_free (pictures);
 }
 
 GstHarness *

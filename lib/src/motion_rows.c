@@ -3,10 +3,11 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "ransac_fit.h"
 
-enum { BANDS = 10, LEAST = 4 /* pairs that tell a band's shift */, REFITS = 4 };
+enum { BANDS = 10, LEAST = 4 /* pairs that tell a band's shift */, ROUNDS = 6 /* similarity and shifts in turn */ };
 
 /* Of the squared residuals, weighed by votes, the rows explain all but this: of two surfaces that share rows, half. No
  * residual counts more than the second, in thresholds. */
@@ -44,19 +45,31 @@ static double band_position(const L1L2Pair *pair, double half_h)
     return fmin(fmax(at, 0.0), BANDS - 1.0);
 }
 
-/* The similarity of all, whatever the rows did: weights fall with the residual, for what is no part of it at all. */
-static bool fit_all(const L1L2Pair *pairs, int count, double threshold, L1L2Mat *fit)
+/* The shift of a pair's row, between the bands' middles. */
+static L1L2Point row_shift(const L1L2Point shift[BANDS], const L1L2Pair *pair, double half_h)
 {
+    const double at = band_position(pair, half_h);
+    const int band = (int)fmin(floor(at), BANDS - 2);
+    const double part = at - band;
+    return (L1L2Point){(1.0 - part) * shift[band].x + part * shift[band + 1].x,
+                       (1.0 - part) * shift[band].y + part * shift[band + 1].y};
+}
+
+/* The similarity of all but for their rows' shifts. Weights fall with the residual, for what is no part of it. */
+static bool fit_all(const L1L2Pair *pairs, int count, const L1L2Point shift[BANDS], double half_h, double threshold,
+                    L1L2Mat *fit)
+{
+    L1L2Pair unshifted[L1L2_RANSAC_MAX_PAIRS];
     double weights[L1L2_RANSAC_MAX_PAIRS];
-    bool found = l1l2_fit(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, NULL, count, fit);
-    for (int k = 0; k < REFITS && found; k++) {
-        for (int i = 0; i < count; i++) {
-            const L1L2Point r = residual(fit, &pairs[i]);
-            weights[i] = 1.0 / (1.0 + (r.x * r.x + r.y * r.y) / (16.0 * threshold * threshold));
-        }
-        found = l1l2_fit(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, weights, count, fit);
+    for (int i = 0; i < count; i++) {
+        const L1L2Point s = row_shift(shift, &pairs[i], half_h);
+        unshifted[i] = (L1L2Pair){pairs[i].from, {pairs[i].to.x - s.x, pairs[i].to.y - s.y}};
     }
-    return found;
+    for (int i = 0; i < count; i++) {
+        const L1L2Point r = residual(fit, &unshifted[i]);
+        weights[i] = 1.0 / (1.0 + (r.x * r.x + r.y * r.y) / (16.0 * threshold * threshold));
+    }
+    return l1l2_fit(L1L2STAB_MOTION_MODEL_SIMILARITY, unshifted, weights, count, fit);
 }
 
 /* The bands' median shifts; false where a band has too few pairs to tell, or the shift jumps from one to the next. */
@@ -78,35 +91,40 @@ static bool band_shifts(const L1L2Pair *pairs, int count, double half_h, double 
                             steepest * threshold)
             return false;
     }
+    L1L2Point mean = {0.0, 0.0}; /* belongs to the similarity */
+    for (int band = 0; band < BANDS; band++)
+        mean.x += shift[band].x / BANDS, mean.y += shift[band].y / BANDS;
+    for (int band = 0; band < BANDS; band++)
+        shift[band].x -= mean.x, shift[band].y -= mean.y;
     return true;
 }
 
 int l1l2_rows_fit(const L1L2Pair *pairs, const double *votes, int count, double half_h, double threshold, bool *inlier,
                   L1L2Mat *fit)
 {
-    L1L2Point shift[BANDS];
-    L1L2Mat all;
-    double weights[L1L2_RANSAC_MAX_PAIRS];
+    L1L2Point shift[BANDS] = {{0.0, 0.0}};
+    bool near[L1L2_RANSAC_MAX_PAIRS];
     double before = 0.0, after = 0.0;
     int inliers = 0;
-    if (!fit_all(pairs, count, threshold, &all) || !band_shifts(pairs, count, half_h, threshold, &all, shift))
+    L1L2Mat all, without;
+    if (!l1l2_fit(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, NULL, count, &all))
         return 0;
+    without = all;
+    for (int k = 0; k < ROUNDS; k++)
+        if (!fit_all(pairs, count, shift, half_h, threshold, &all) ||
+            !band_shifts(pairs, count, half_h, threshold, &all, shift))
+            return 0;
     for (int i = 0; i < count; i++) {
-        const double at = band_position(&pairs[i], half_h);
-        const int band = (int)fmin(floor(at), BANDS - 2);
-        const L1L2Point r = residual(&all, &pairs[i]);
-        const double part = at - band;
-        const double x = r.x - (1.0 - part) * shift[band].x - part * shift[band + 1].x;
-        const double y = r.y - (1.0 - part) * shift[band].y - part * shift[band + 1].y;
-        weights[i] = hypot(x, y) <= near_row * threshold ? 1.0 : 0.0;
-        before += votes[i] * capped(r.x, r.y, threshold);
-        after += votes[i] * capped(x, y, threshold);
+        const L1L2Point s = row_shift(shift, &pairs[i], half_h), r = residual(&all, &pairs[i]);
+        const L1L2Point plain = residual(&without, &pairs[i]);
+        near[i] = hypot(r.x - s.x, r.y - s.y) <= near_row * threshold;
+        inliers += near[i];
+        before += votes[i] * capped(plain.x, plain.y, threshold);
+        after += votes[i] * capped(r.x - s.x, r.y - s.y, threshold);
     }
-    if (after > most_left * before || !l1l2_fit(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, weights, count, fit))
+    if (after > most_left * before)
         return 0;
-    for (int i = 0; i < count; i++) {
-        inlier[i] = weights[i] > 0.0;
-        inliers += inlier[i];
-    }
+    memcpy(inlier, near, (size_t)count * sizeof *near);
+    *fit = all;
     return inliers;
 }

@@ -5,8 +5,8 @@
 
 enum { CELLS_X = L1L2_VOTE_CELLS_X, CELLS_Y = L1L2_VOTE_CELLS_Y, CELLS = L1L2_VOTE_CELLS };
 
-/* At the left, right and upper rim a vote counts so much more than in the middle, by the fourth power of the distance. A
- * subject stands in the middle or at the bottom. */
+/* At the left, right and upper rim a vote counts so much more than in the middle, by the fourth power of the distance.
+ * A subject stands in the middle or at the bottom. */
 static const double rim_factor = 8.0;
 /* A track of ten frames has three times a new one's vote. */
 static const int grown_up = 10;

@@ -269,6 +269,22 @@ START_TEST(knobs_set_while_running_are_checked_and_used)
 }
 END_TEST
 
+START_TEST(the_threads_are_those_asked_for_and_the_inner_loops_have_a_name)
+{
+    for (int threads = 0; threads <= 3; threads++) {
+        L1L2StabConfig cfg = small_config(8);
+        cfg.threads = threads;
+        L1L2Stab *s = create(&cfg);
+        ck_assert_int_ge(l1l2stab_threads(s), 1);
+        if (threads)
+            ck_assert_int_eq(l1l2stab_threads(s), threads);
+        l1l2stab_free(&s);
+    }
+    ck_assert_int_eq(l1l2stab_threads(NULL), 0);
+    ck_assert(strcmp(l1l2stab_simd(), "avx2") == 0 || strcmp(l1l2stab_simd(), "none") == 0);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("stabilizer");
@@ -282,6 +298,7 @@ int main(void)
     tcase_add_test(tcase, the_infos_matrices_agree_with_each_other);
     tcase_add_test(tcase, a_discontinuity_starts_a_path_without_a_change_of_delay);
     tcase_add_test(tcase, given_motions_take_the_place_of_measured_ones);
+    tcase_add_test(tcase, the_threads_are_those_asked_for_and_the_inner_loops_have_a_name);
     tcase_add_test(tcase, knobs_set_while_running_are_checked_and_used);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);

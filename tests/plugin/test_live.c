@@ -95,6 +95,31 @@ GST_START_TEST (a_controller_switches_the_bypass_by_the_time_of_the_frame_out)
 
 GST_END_TEST;
 
+GST_START_TEST (a_bypass_with_output_size_crop_shows_the_middle)
+{
+  const guint left = (NOISE_WIDTH - 120) / 2, top = (NOISE_HEIGHT - 90) / 2;
+  GstHarness *h = stab_harness_new (NULL, "window", WINDOW, NULL);
+  GstBuffer *source = stab_noise_new (0), *buffer;
+  GstMapInfo map;
+  guint row;
+
+  g_object_set (h->element, "output-size", L1L2STAB_OUTPUT_SIZE_CROP,
+      "crop-ratio", 0.75, "bypass", TRUE, NULL);
+  gst_harness_set_src_caps_str (h, NOISE_CAPS);
+  stab_noise_push (h, 0, WINDOW);
+  buffer = gst_harness_pull (h);
+  fail_unless (gst_buffer_map (source, &map, GST_MAP_READ));
+  for (row = 0; row < 90; row++)
+    fail_unless (gst_buffer_memcmp (buffer, row * 120,
+            map.data + (top + row) * NOISE_WIDTH + left, 120) == 0);
+  gst_buffer_unmap (source, &map);
+  gst_buffer_unref (source);
+  gst_buffer_unref (buffer);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 static GstEvent *
 new_pointer (guint kind, gdouble x, gdouble y)
 {
@@ -227,6 +252,7 @@ live_suite (void)
       a_stream_that_starts_bypassed_is_whole_from_its_first_frame);
   tcase_add_test (tc,
       a_controller_switches_the_bypass_by_the_time_of_the_frame_out);
+  tcase_add_test (tc, a_bypass_with_output_size_crop_shows_the_middle);
   tcase_add_loop_test (tc,
       a_pointer_over_the_last_frame_out_points_at_its_source, 0, 5);
   tcase_add_test (tc, a_key_goes_upstream_as_it_is);

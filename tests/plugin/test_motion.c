@@ -2,9 +2,10 @@
 /* Motion files: what one run writes another reads, to the bit. */
 #include "motion_fixture.h"
 
-/* The pictures of a clip with a cut, one after the other; times receives what the analysis took. */
+/* The pictures of a clip with a cut, one after the other; *analysis: ns a frame. */
 static GByteArray *
-run (const gchar * in, const gchar * out, guint64 * analysis)
+run (const gchar * in, const gchar * out, L1L2StabMotionModel model,
+    guint64 * analysis)
 {
   static const gchar *stages[] = { "scale-time", "track-time", "fit-time" };
   GByteArray *pictures = g_byte_array_new ();
@@ -14,6 +15,7 @@ run (const gchar * in, const gchar * out, guint64 * analysis)
   guint64 time;
   guint i;
 
+  g_object_set (h->element, "motion-model", model, NULL);
   play (h);
   for (i = 0; i < N_FRAMES; i++)
     push_frame (h, i);
@@ -42,8 +44,8 @@ run (const gchar * in, const gchar * out, guint64 * analysis)
 GST_START_TEST (a_second_run_gives_the_same_bytes_without_analysis)
 {
   guint64 first_analysis, second_analysis;
-  GByteArray *one = run (NULL, "a", &first_analysis);
-  GByteArray *two = run ("a", "b", &second_analysis);
+  GByteArray *one = run (NULL, "a", __i__, &first_analysis);
+  GByteArray *two = run ("a", "b", __i__, &second_analysis);
   gchar *a = contents ("a"), *b = contents ("b");
 
   fail_unless_equals_int (one->len, N_FRAMES * NOISE_WIDTH * NOISE_HEIGHT);
@@ -130,6 +132,32 @@ GST_START_TEST (what_is_played_again_is_written_once_and_a_flush_begins_anew)
 
 GST_END_TEST;
 
+GST_START_TEST (frames_of_another_size_end_the_file_with_a_warning)
+{
+  GstHarness *h = harness_new (NULL, "a");
+  GstMessage *message;
+  gchar *before, *after;
+
+  play (h);
+  stab_noise_push (h, 0, WINDOW);
+  gst_harness_set_src_caps_str (h, SMALL_CAPS);
+  before = contents ("a");
+  stab_push_frames (h, WINDOW, WINDOW);
+  gst_harness_push_event (h, gst_event_new_eos ());
+  after = contents ("a");
+  fail_unless_equals_int (gst_harness_buffers_received (h), 2 * WINDOW);
+  fail_unless_equals_string (before, after);
+  message = stab_harness_message (h, GST_MESSAGE_WARNING);
+  fail_unless (message != NULL);
+  gst_message_unref (message);
+  fail_unless (stab_harness_message (h, GST_MESSAGE_WARNING) == NULL);
+  g_free (before);
+  g_free (after);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (a_full_disk_is_an_error)
 {
   GstHarness *h = harness_new (NULL, NULL);
@@ -155,11 +183,13 @@ motion_suite (void)
 
   suite_add_tcase (s, tc);
   tcase_add_checked_fixture (tc, make_folder, remove_folder);
-  tcase_add_test (tc, a_second_run_gives_the_same_bytes_without_analysis);
+  tcase_add_loop_test (tc, a_second_run_gives_the_same_bytes_without_analysis,
+      L1L2STAB_MOTION_MODEL_TRANSLATION, L1L2STAB_MOTION_MODEL_SIMILARITY + 1);
   tcase_add_test (tc,
       the_file_is_whole_when_the_stream_ends_and_reads_as_documented);
   tcase_add_test (tc,
       what_is_played_again_is_written_once_and_a_flush_begins_anew);
+  tcase_add_test (tc, frames_of_another_size_end_the_file_with_a_warning);
   tcase_add_test (tc, a_full_disk_is_an_error);
   return s;
 }

@@ -10,7 +10,7 @@
 #include "ransac.h"
 
 /* Do the pairs, by their votes, follow a similarity and a shift that depends on the row alone? Then *fit is the
- * similarity (the shifts' mean is in it), inlier[i] tells which pairs, and their number is returned; else 0, and nothing
+ * similarity (with the mean shift), inlier[i] tells which pairs, and their number is returned; else 0, and nothing
  * is written. half_h: half of the frame's height in the pairs' unit. */
 int l1l2_rows_fit(const L1L2Pair *pairs, const double *votes, int count, double half_h, double threshold, bool *inlier,
                   L1L2Mat *fit);

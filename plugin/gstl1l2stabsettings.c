@@ -155,138 +155,107 @@ gst_l1l2_stab_settings_clear (GstL1L2StabSettings * settings)
   g_clear_pointer (&settings->motion_out, g_free);
 }
 
-/* Nobody means a file without a name. */
-static void
-set_file (gchar ** file, const GValue * value)
-{
-  const gchar *name = g_value_get_string (value);
-
-  g_free (*file);
-  *file = name && *name ? g_strdup (name) : NULL;
-}
-
-static gboolean
-set_field (GstL1L2StabSettings * settings, guint id, const GValue * value)
+/* What the property sets, of the type that its values have; NULL: no such property. */
+static gpointer
+find_field (GstL1L2StabSettings * settings, guint id)
 {
   L1L2StabConfig *config = &settings->wanted;
 
   switch (id) {
     case PROP_LAMBDA:
-      config->lambda = g_value_get_double (value);
-      return TRUE;
+      return &config->lambda;
     case PROP_CROP_RATIO:
-      config->crop_ratio = g_value_get_double (value);
-      return TRUE;
+      return &config->crop_ratio;
     case PROP_BYPASS:
-      settings->bypass = g_value_get_boolean (value);
-      return TRUE;
+      return &settings->bypass;
     case PROP_WINDOW:
-      config->window = g_value_get_int (value);
-      return TRUE;
+      return &config->window;
     case PROP_OVERLAP:
-      config->overlap = g_value_get_int (value);
-      return TRUE;
+      return &config->overlap;
     case PROP_JOIN:
-      config->join = g_value_get_enum (value);
-      return TRUE;
+      return &config->join;
     case PROP_MOTION_MODEL:
-      config->motion_model = g_value_get_enum (value);
-      return TRUE;
+      return &config->motion_model;
     case PROP_INTERPOLATION:
-      config->interpolation = g_value_get_enum (value);
-      return TRUE;
+      return &config->interpolation;
     case PROP_OUTPUT_SIZE:
-      config->output_size = g_value_get_enum (value);
-      return TRUE;
+      return &config->output_size;
     case PROP_THREADS:
-      config->threads = g_value_get_int (value);
-      return TRUE;
+      return &config->threads;
     case PROP_MOTION_IN:
-      set_file (&settings->motion_in, value);
-      return TRUE;
+      return &settings->motion_in;
     case PROP_MOTION_OUT:
-      set_file (&settings->motion_out, value);
-      return TRUE;
+      return &settings->motion_out;
     case PROP_POST_MESSAGES:
-      settings->post_messages = g_value_get_boolean (value);
-      return TRUE;
+      return &settings->post_messages;
     default:
-      return FALSE;
+      return NULL;
   }
 }
 
-static gboolean
-get_field (const GstL1L2StabSettings * settings, guint id, GValue * value)
-{
-  const L1L2StabConfig *config = &settings->wanted;
+G_STATIC_ASSERT (sizeof (L1L2StabJoin) == sizeof (gint));
 
-  switch (id) {
-    case PROP_LAMBDA:
-      g_value_set_double (value, config->lambda);
-      return TRUE;
-    case PROP_CROP_RATIO:
-      g_value_set_double (value, config->crop_ratio);
-      return TRUE;
-    case PROP_BYPASS:
-      g_value_set_boolean (value, settings->bypass);
-      return TRUE;
-    case PROP_WINDOW:
-      g_value_set_int (value, config->window);
-      return TRUE;
-    case PROP_OVERLAP:
-      g_value_set_int (value, config->overlap);
-      return TRUE;
-    case PROP_JOIN:
-      g_value_set_enum (value, config->join);
-      return TRUE;
-    case PROP_MOTION_MODEL:
-      g_value_set_enum (value, config->motion_model);
-      return TRUE;
-    case PROP_INTERPOLATION:
-      g_value_set_enum (value, config->interpolation);
-      return TRUE;
-    case PROP_OUTPUT_SIZE:
-      g_value_set_enum (value, config->output_size);
-      return TRUE;
-    case PROP_THREADS:
-      g_value_set_int (value, config->threads);
-      return TRUE;
-    case PROP_MOTION_IN:
-      g_value_set_string (value, settings->motion_in);
-      return TRUE;
-    case PROP_MOTION_OUT:
-      g_value_set_string (value, settings->motion_out);
-      return TRUE;
-    case PROP_POST_MESSAGES:
-      g_value_set_boolean (value, settings->post_messages);
-      return TRUE;
-    default:
-      return FALSE;
+static void
+set_field (gpointer field, const GValue * value)
+{
+  if (G_VALUE_HOLDS_DOUBLE (value)) {
+    *(gdouble *) field = g_value_get_double (value);
+  } else if (G_VALUE_HOLDS_ENUM (value)) {
+    *(gint *) field = g_value_get_enum (value);
+  } else if (G_VALUE_HOLDS_BOOLEAN (value)) {
+    *(gboolean *) field = g_value_get_boolean (value);
+  } else if (G_VALUE_HOLDS_STRING (value)) {
+    const gchar *name = g_value_get_string (value);
+
+    /* Nobody means a file without a name. */
+    g_free (*(gchar **) field);
+    *(gchar **) field = name && *name ? g_strdup (name) : NULL;
+  } else {
+    *(gint *) field = g_value_get_int (value);
   }
+}
+
+static void
+get_field (gconstpointer field, GValue * value)
+{
+  if (G_VALUE_HOLDS_DOUBLE (value))
+    g_value_set_double (value, *(const gdouble *) field);
+  else if (G_VALUE_HOLDS_ENUM (value))
+    g_value_set_enum (value, *(const gint *) field);
+  else if (G_VALUE_HOLDS_BOOLEAN (value))
+    g_value_set_boolean (value, *(const gboolean *) field);
+  else if (G_VALUE_HOLDS_STRING (value))
+    g_value_set_string (value, *(gchar * const *) field);
+  else
+    g_value_set_int (value, *(const gint *) field);
 }
 
 gboolean
 gst_l1l2_stab_settings_set (GstL1L2StabSettings * settings, guint id,
     const GValue * value)
 {
-  gboolean known;
+  gpointer field = find_field (settings, id);
 
+  if (!field)
+    return FALSE;
   GST_OBJECT_LOCK (settings->object);
-  known = set_field (settings, id, value);
+  set_field (field, value);
   GST_OBJECT_UNLOCK (settings->object);
-  return known;
+  return TRUE;
 }
 
 gboolean
 gst_l1l2_stab_settings_get (GstL1L2StabSettings * settings, guint id,
     GValue * value)
 {
-  gboolean known;
+  gpointer field = find_field (settings, id);
 
+  if (!field)
+    return FALSE;
   GST_OBJECT_LOCK (settings->object);
-  known = get_field (settings, id, value);
+  get_field (field, value);
   GST_OBJECT_UNLOCK (settings->object);
-  return known;
+  return TRUE;
 }
 
 /* Caps are worked out, and the library is made for them, at different moments: with properties that change in between,

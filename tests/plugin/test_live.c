@@ -240,6 +240,55 @@ GST_START_TEST (lateness_drops_no_input_whatever_qos_says)
 
 GST_END_TEST;
 
+static GstHarnessThread *
+switch_on_and_on (GstHarness * h, const gchar * name, gboolean on)
+{
+  GValue value = G_VALUE_INIT;
+
+  g_value_init (&value, G_TYPE_BOOLEAN);
+  g_value_set_boolean (&value, on);
+  return gst_harness_stress_property_start (h, name, &value);
+}
+
+static void
+read_and_point (gpointer thread, gpointer harness)
+{
+  GstHarness *h = harness;
+  GstStructure *stats = NULL;
+
+  g_object_get (h->element, "stats", &stats, NULL);
+  gst_structure_free (stats);
+  gst_pad_push_event (h->sinkpad, new_pointer (0, 10, 20));
+}
+
+GST_START_TEST (threads_that_switch_read_and_point_lose_no_frame)
+{
+  GstHarness *h = stab_noise_harness_new (WINDOW);
+  GstHarnessThread *threads[5];
+  GstStructure *stats = NULL;
+  guint64 out;
+  guint i;
+
+  threads[0] = switch_on_and_on (h, "bypass", TRUE);
+  threads[1] = switch_on_and_on (h, "bypass", FALSE);
+  threads[2] = switch_on_and_on (h, "post-messages", TRUE);
+  threads[3] = switch_on_and_on (h, "post-messages", FALSE);
+  threads[4] = gst_harness_stress_custom_start (h, NULL, read_and_point, h,
+      100);
+  stab_noise_push (h, 0, 3 * N_FRAMES);
+  gst_harness_push_event (h, gst_event_new_eos ());
+  for (i = 0; i < G_N_ELEMENTS (threads); i++)
+    gst_harness_stress_thread_stop (threads[i]);
+  fail_unless_equals_int (gst_harness_buffers_received (h), 3 * N_FRAMES);
+  g_object_get (h->element, "stats", &stats, NULL);
+  fail_unless (gst_structure_get_uint64 (stats, "frames-out", &out));
+  fail_unless_equals_uint64 (out, 3 * N_FRAMES);
+  gst_structure_free (stats);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 static Suite *
 live_suite (void)
 {
@@ -256,6 +305,7 @@ live_suite (void)
   tcase_add_loop_test (tc,
       a_pointer_over_the_last_frame_out_points_at_its_source, 0, 5);
   tcase_add_test (tc, a_key_goes_upstream_as_it_is);
+  tcase_add_test (tc, threads_that_switch_read_and_point_lose_no_frame);
   tcase_add_test (tc, lateness_drops_no_input_whatever_qos_says);
   return s;
 }

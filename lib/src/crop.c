@@ -2,65 +2,106 @@
 #include "crop.h"
 
 #include <math.h>
+#include <string.h>
 
-static const double min_a = 0.9, max_a = 1.1, max_b = 0.1;
+static const double min_zoom = 0.9, max_zoom = 1.1, max_turn = 0.1, max_skew = 0.05, max_stretch = 0.1;
 
-L1L2Crop l1l2_crop_make(int width_px, int height_px, double ratio)
+typedef struct Rows {
+    double G[L1L2_CROP_ROWS][L1L2_DIM], lo[L1L2_CROP_ROWS], hi[L1L2_CROP_ROWS];
+} Rows;
+
+L1L2Crop l1l2_crop_make(int width_px, int height_px, double ratio, int dim)
 {
     const double diagonal_px = hypot(width_px, height_px);
-    return (L1L2Crop){width_px / (2.0 * diagonal_px), height_px / (2.0 * diagonal_px), ratio};
+    return (L1L2Crop){width_px / (2.0 * diagonal_px), height_px / (2.0 * diagonal_px), ratio, dim};
 }
 
-/* A point of B as a linear form of (a, b, x, y): x row [ux -uy 1 0], y row [uy ux 0 1]. Corners come with both signs,
- * so rows are two-sided. */
-static void update_rows(const L1L2Crop *crop, double G[L1L2_CROP_ROWS][4], double lo[L1L2_CROP_ROWS],
-                        double hi[L1L2_CROP_ROWS])
+int l1l2_crop_row_count(int dim)
 {
-    for (int k = 0; k < 4; k++) {
-        const double ux = crop->ratio * (k & 1 ? crop->half_w : -crop->half_w);
-        const double uy = crop->ratio * (k & 2 ? crop->half_h : -crop->half_h);
-        double *gx = G[2 * k], *gy = G[2 * k + 1];
-        gx[0] = ux, gx[1] = -uy, gx[2] = 1.0, gx[3] = 0.0;
-        gy[0] = uy, gy[1] = ux, gy[2] = 0.0, gy[3] = 1.0;
-        hi[2 * k] = crop->half_w, lo[2 * k] = -crop->half_w;
-        hi[2 * k + 1] = crop->half_h, lo[2 * k + 1] = -crop->half_h;
-    }
-    G[8][0] = 1.0, G[8][1] = G[8][2] = G[8][3] = 0.0;
-    G[9][1] = 1.0, G[9][0] = G[9][2] = G[9][3] = 0.0;
-    lo[8] = min_a, hi[8] = max_a;
-    lo[9] = -max_b, hi[9] = max_b;
+    return dim == 2 ? 2 : dim == 4 ? 10 : 14;
 }
 
-void l1l2_crop_rows(const L1L2Crop *crop, const L1L2Mat *camera, double G[L1L2_CROP_ROWS][4],
+static void put(Rows *rows, int r, const double g[L1L2_DIM], double lo, double hi)
+{
+    memcpy(rows->G[r], g, sizeof rows->G[r]);
+    rows->lo[r] = lo, rows->hi[r] = hi;
+}
+
+/* The rows on the parameters of B itself. Corners come with both signs, so rows are two-sided. */
+static void update_rows(const L1L2Crop *crop, Rows *rows)
+{
+    if (crop->dim == 2) {
+        const double room = 1.0 - crop->ratio;
+        put(rows, 0, (double[L1L2_DIM]){1.0}, -room * crop->half_w, room * crop->half_w);
+        put(rows, 1, (double[L1L2_DIM]){0.0, 1.0}, -room * crop->half_h, room * crop->half_h);
+        return;
+    }
+    for (int k = 0; k < 4; k++) {
+        const double u = 2.0 * crop->ratio * (k & 1 ? crop->half_w : -crop->half_w);
+        const double v = 2.0 * crop->ratio * (k & 2 ? crop->half_h : -crop->half_h);
+        put(rows, 2 * k, (double[L1L2_DIM]){1.0, 0.0, u, -v, u, v}, -crop->half_w, crop->half_w);
+        put(rows, 2 * k + 1, (double[L1L2_DIM]){0.0, 1.0, v, u, -v, u}, -crop->half_h, crop->half_h);
+    }
+    if (crop->dim == 4) {
+        put(rows, 8, (double[L1L2_DIM]){0.0, 0.0, 2.0, 0.0}, min_zoom, max_zoom);
+        put(rows, 9, (double[L1L2_DIM]){0.0, 0.0, 0.0, 2.0}, -max_turn, max_turn);
+        return;
+    }
+    put(rows, 8, (double[L1L2_DIM]){0.0, 0.0, 2.0, 0.0, 2.0, 0.0}, min_zoom, max_zoom);
+    put(rows, 9, (double[L1L2_DIM]){0.0, 0.0, 2.0, 0.0, -2.0, 0.0}, min_zoom, max_zoom);
+    put(rows, 10, (double[L1L2_DIM]){0.0, 0.0, 0.0, 2.0, 0.0, 2.0}, -max_turn, max_turn);
+    put(rows, 11, (double[L1L2_DIM]){0.0, 0.0, 0.0, -2.0, 0.0, 2.0}, -max_turn, max_turn);
+    put(rows, 12, (double[L1L2_DIM]){0.0, 0.0, 0.0, 0.0, 4.0, 0.0}, -max_stretch, max_stretch);
+    put(rows, 13, (double[L1L2_DIM]){0.0, 0.0, 0.0, 0.0, 0.0, 4.0}, -max_skew, max_skew);
+}
+
+void l1l2_crop_rows(const L1L2Crop *crop, const L1L2Mat *camera, double G[L1L2_CROP_ROWS][L1L2_DIM],
                     double lo[L1L2_CROP_ROWS], double hi[L1L2_CROP_ROWS])
 {
-    update_rows(crop, G, lo, hi);
-    /* B = C^-1 P. With C = (ca, cb, cx, cy) as complex numbers: a + ib and x + iy of B are those of P, less C's
-     * translation, times conj(c)/|c|^2 =: u + iv. */
-    const double ca = camera->m[0], cb = camera->m[3], cx = camera->m[2], cy = camera->m[5];
-    const double norm = ca * ca + cb * cb;
-    const double u = ca / norm, v = -cb / norm;
-    for (int r = 0; r < L1L2_CROP_ROWS; r++) {
-        const double ga = G[r][0], gb = G[r][1], gx = G[r][2], gy = G[r][3];
-        G[r][0] = u * ga + v * gb, G[r][1] = -v * ga + u * gb;
-        G[r][2] = u * gx + v * gy, G[r][3] = -v * gx + u * gy;
-        const double shift = G[r][2] * cx + G[r][3] * cy;
-        lo[r] += shift, hi[r] += shift;
+    Rows rows;
+    L1L2Mat inverse;
+    double c[L1L2_DIM];
+    update_rows(crop, &rows);
+    /* B = C^-1 P: of the linear part a product, whose parameters are bilinear in those of its factors; of the
+     * translation that of P, less C's, in turn. */
+    if (!l1l2_mat_inverse(*camera, &inverse))
+        inverse.m[0] = inverse.m[4] = NAN; /* rows that no solver can meet, rather than wrong ones */
+    l1l2_mat_to_q(&inverse, c);
+    const double a = 2.0 * c[2], b = 2.0 * c[3], e = 2.0 * c[4], f = 2.0 * c[5];
+    for (int r = 0; r < l1l2_crop_row_count(crop->dim); r++) {
+        const double *g = rows.G[r];
+        const double moved[L1L2_DIM] = {
+            (a + e) * g[0] + (b + f) * g[1],
+            (f - b) * g[0] + (a - e) * g[1],
+            a * g[2] + b * g[3] + e * g[4] + f * g[5],
+            a * g[3] - b * g[2] + f * g[4] - e * g[5],
+            a * g[4] + b * g[5] + e * g[2] + f * g[3],
+            a * g[5] - b * g[4] + f * g[2] - e * g[3],
+        };
+        const double shift = moved[0] * camera->m[2] + moved[1] * camera->m[5];
+        memcpy(G[r], moved, (size_t)crop->dim * sizeof *moved);
+        lo[r] = rows.lo[r] + shift;
+        hi[r] = rows.hi[r] + shift;
     }
 }
 
-static double row_value(const double g[4], const L1L2Mat *B)
+static double row_value(const L1L2Crop *crop, const double g[L1L2_DIM], const L1L2Mat *B)
 {
-    return g[0] * B->m[0] + g[1] * B->m[3] + g[2] * B->m[2] + g[3] * B->m[5];
+    double q[L1L2_DIM], value = 0.0;
+    l1l2_mat_to_q(B, q);
+    for (int j = 0; j < crop->dim; j++)
+        value += g[j] * q[j];
+    return value;
 }
 
 double l1l2_crop_excess(const L1L2Crop *crop, const L1L2Mat *B)
 {
-    double G[L1L2_CROP_ROWS][4], lo[L1L2_CROP_ROWS], hi[L1L2_CROP_ROWS], worst = -HUGE_VAL;
-    update_rows(crop, G, lo, hi);
-    for (int r = 0; r < L1L2_CROP_ROWS; r++) {
-        const double value = row_value(G[r], B);
-        worst = fmax(worst, fmax(value - hi[r], lo[r] - value));
+    Rows rows;
+    double worst = -HUGE_VAL;
+    update_rows(crop, &rows);
+    for (int r = 0; r < l1l2_crop_row_count(crop->dim); r++) {
+        const double value = row_value(crop, rows.G[r], B);
+        worst = fmax(worst, fmax(value - rows.hi[r], rows.lo[r] - value));
     }
     return worst;
 }
@@ -70,14 +111,15 @@ L1L2Mat l1l2_crop_admit(const L1L2Crop *crop, const L1L2Mat *B)
     const L1L2Mat identity = l1l2_mat_identity();
     if (!l1l2_mat_is_finite(B))
         return identity;
-    double G[L1L2_CROP_ROWS][4], lo[L1L2_CROP_ROWS], hi[L1L2_CROP_ROWS], keep = 1.0;
-    update_rows(crop, G, lo, hi);
-    for (int r = 0; r < L1L2_CROP_ROWS; r++) {
-        const double at_identity = row_value(G[r], &identity), value = row_value(G[r], B);
-        if (value > hi[r])
-            keep = fmin(keep, (hi[r] - at_identity) / (value - at_identity));
-        if (value < lo[r])
-            keep = fmin(keep, (at_identity - lo[r]) / (at_identity - value));
+    Rows rows;
+    double keep = 1.0;
+    update_rows(crop, &rows);
+    for (int r = 0; r < l1l2_crop_row_count(crop->dim); r++) {
+        const double at_identity = row_value(crop, rows.G[r], &identity), value = row_value(crop, rows.G[r], B);
+        if (value > rows.hi[r])
+            keep = fmin(keep, (rows.hi[r] - at_identity) / (value - at_identity));
+        if (value < rows.lo[r])
+            keep = fmin(keep, (at_identity - rows.lo[r]) / (at_identity - value));
     }
     L1L2Mat admitted = *B;
     if (keep < 1.0)

@@ -23,6 +23,34 @@ L1L2Mat l1l2_mat_diagonal(double x, double y)
     return (L1L2Mat){{x, 0.0, 0.0, 0.0, y, 0.0, 0.0, 0.0, 1.0}};
 }
 
+int l1l2_mat_dim(L1L2StabMotionModel model)
+{
+    return model == L1L2STAB_MOTION_MODEL_TRANSLATION ? 2 : model == L1L2STAB_MOTION_MODEL_SIMILARITY ? 4 : 6;
+}
+
+L1L2Mat l1l2_mat_from_q(const double q[L1L2_DIM], int dim)
+{
+    const double a = dim > 2 ? 2.0 * q[2] : 1.0, b = dim > 2 ? 2.0 * q[3] : 0.0;
+    const double e = dim > 4 ? 2.0 * q[4] : 0.0, f = dim > 4 ? 2.0 * q[5] : 0.0;
+    return (L1L2Mat){{a + e, f - b, q[0], b + f, a - e, q[1], 0.0, 0.0, 1.0}};
+}
+
+void l1l2_mat_to_q(const L1L2Mat *m, double q[L1L2_DIM])
+{
+    q[0] = m->m[2], q[1] = m->m[5];
+    q[2] = 0.25 * (m->m[0] + m->m[4]), q[3] = 0.25 * (m->m[3] - m->m[1]);
+    q[4] = 0.25 * (m->m[0] - m->m[4]), q[5] = 0.25 * (m->m[3] + m->m[1]);
+}
+
+L1L2Mat l1l2_mat_reduce(const L1L2Mat *m, int dim)
+{
+    if (dim == L1L2_DIM)
+        return (L1L2Mat){{m->m[0], m->m[1], m->m[2], m->m[3], m->m[4], m->m[5], 0.0, 0.0, 1.0}};
+    double q[L1L2_DIM];
+    l1l2_mat_to_q(m, q);
+    return l1l2_mat_from_q(q, dim);
+}
+
 L1L2Mat l1l2_mat_mul(L1L2Mat a, L1L2Mat b)
 {
     L1L2Mat r;

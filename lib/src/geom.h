@@ -8,14 +8,21 @@
  *   Pixels     centres at half-integers: the frame is exactly [-W/2, W/2] x [-H/2, H/2] px.
  *   Direction  F_t maps points of frame t to frame t-1; C_t = F_1 ... F_t (eq. 1); P_t = C_t B_t (eq. 2);
  *              B_t maps the crop window to the source frame.
- *   Similarity p = (a, b, x, y):  [a -b x]
- *                                 [b  a y]
- *                                 [0  0 1]
+ *   Parameters q = (x, y, a, b, e, f / 2 each):  [a + e  f - b  x]     a zoom, b turn, e stretch, f skew
+ *                                                [b + f  a - e  y]
+ *                                                [0      0      1]
+ *              A motion model has the first `dim` of them: translation 2, similarity 4, affine 6; the rest is the
+ *              identity's. The linear ones are halved because a change of a, b, e or f by d moves each corner of the
+ *              frame by d/2 diagonals: a change of any parameter by 1 moves the corners by 1.
  */
 #ifndef L1L2_GEOM_H
 #define L1L2_GEOM_H
 
 #include <stdbool.h>
+
+#include <l1l2stab/l1l2stab.h>
+
+#define L1L2_DIM 6 /* parameters of a map, at most */
 
 typedef struct L1L2Point {
     double x, y;
@@ -31,6 +38,16 @@ L1L2Mat l1l2_mat_similarity(double a, double b, double x, double y);
 L1L2Mat l1l2_mat_translation(double x, double y);
 /* diag(x, y, 1) */
 L1L2Mat l1l2_mat_diagonal(double x, double y);
+
+/* The number of parameters of a motion model. */
+int l1l2_mat_dim(L1L2StabMotionModel model);
+
+/* The affine map of the first `dim` parameters; they in turn are those of the map. */
+L1L2Mat l1l2_mat_from_q(const double q[L1L2_DIM], int dim);
+void l1l2_mat_to_q(const L1L2Mat *m, double q[L1L2_DIM]);
+
+/* What a motion model of `dim` parameters can say of m: the rest is left out. An affine m of the model is unchanged. */
+L1L2Mat l1l2_mat_reduce(const L1L2Mat *m, int dim);
 
 /* The map that applies b first: (a b) u = a (b u). */
 L1L2Mat l1l2_mat_mul(L1L2Mat a, L1L2Mat b);

@@ -40,11 +40,12 @@ L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg)
     L1L2Path *path = l1l2_mem_new(1, sizeof *path);
     if (!path)
         return L1L2STAB_ERR_NOMEM;
+    const int dim = l1l2_mat_dim(cfg->model);
     path->cfg = *cfg;
     path->capacity = cfg->window + L1L2_HISTORY + 1;
     path->slots = l1l2_mem_new((size_t)path->capacity, sizeof *path->slots);
-    path->problem = l1l2_path_problem_create(cfg->window);
-    path->solver = l1l2_path_solver_create(cfg->window);
+    path->problem = l1l2_path_problem_create(cfg->window, dim);
+    path->solver = l1l2_path_solver_create(cfg->window, dim);
     path->solution = l1l2_mem_new((size_t)cfg->window, sizeof *path->solution);
     if (!path->slots || !path->problem || !path->solver || !path->solution) {
         l1l2_path_free(path);
@@ -86,7 +87,7 @@ void l1l2_path_set_crop_ratio(L1L2Path *path, double crop_ratio)
 
 static L1L2Crop crop_of(const L1L2Path *path, const L1L2PathFrame *frame)
 {
-    return l1l2_crop_make(path->cfg.width, path->cfg.height, frame->crop_ratio);
+    return l1l2_crop_make(path->cfg.width, path->cfg.height, frame->crop_ratio, path->problem->dim);
 }
 
 /* The frames of a window that are averaged with the window before it. Where there are none the join is continuous. */
@@ -119,7 +120,7 @@ static void describe_window(L1L2Path *path, const L1L2PlanStep *step)
         l1l2_mat_inverse(slot(path, first - back + 1)->frame.F, &inverse);
         camera = l1l2_mat_mul(camera, inverse);
         const L1L2Mat smooth = l1l2_mat_mul(camera, slot(path, first - back)->frame.B);
-        l1l2_q_from_mat(&smooth, p->past[L1L2_HISTORY - back]);
+        l1l2_mat_to_q(&smooth, p->past[L1L2_HISTORY - back]);
         p->history = back;
     }
 }
@@ -153,7 +154,8 @@ static void update_transforms(L1L2Path *path, const L1L2PlanStep *step)
 {
     const L1L2PathProblem *p = path->problem;
     for (int t = 0; t < step->count; t++) {
-        const L1L2Mat camera = l1l2_q_to_mat(p->camera[t]), smooth = l1l2_q_to_mat(path->solution[t]);
+        const L1L2Mat camera = l1l2_mat_from_q(p->camera[t], p->dim);
+        const L1L2Mat smooth = l1l2_mat_from_q(path->solution[t], p->dim);
         Slot *s = slot(path, path->start + step->first + t);
         const L1L2Crop crop = crop_of(path, &s->frame);
         L1L2Mat inverse;
@@ -249,8 +251,13 @@ void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path)
     else
         path->crop_ratio += copysign(L1L2_CROP_STEP, zoom);
     L1L2PathFrame *f = &slot(path, path->pushed)->frame;
-    L1L2Mat inverse;
-    f->F = !starts_path && l1l2_mat_is_finite(F) && l1l2_mat_inverse(*F, &inverse) ? *F : l1l2_mat_identity();
+    f->F = l1l2_mat_identity();
+    if (!starts_path) {
+        const L1L2Mat motion = l1l2_mat_reduce(F, path->problem->dim);
+        L1L2Mat inverse;
+        if (l1l2_mat_is_finite(F) && l1l2_mat_inverse(motion, &inverse))
+            f->F = motion;
+    }
     f->lambda = path->cfg.lambda;
     f->crop_ratio = path->crop_ratio;
     f->path_index = (uint64_t)(path->pushed - path->start);

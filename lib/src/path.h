@@ -2,9 +2,9 @@
 /*
  * Algorithm 1, steps 2 and 3, over a stream of any length: inter-frame motions in, update transforms out.
  *
- * Numbers only, no pixels. Unit: the frame's diagonal. A path is the frames from one cut to the next; windows, joins
- * and ends are those of plan.h. C_t is taken relative to each window's first frame, so numbers stay near 1 however
- * long the video is.
+ * Numbers only, no pixels. Unit: the frame's diagonal. All maps are of one motion model: with translations the picture
+ * is moved, never turned or zoomed. A path is the frames from one cut to the next; windows, joins and ends are those of
+ * plan.h. C_t is taken relative to each window's first frame, so numbers stay near 1 however long the video is.
  *
  * Joins (paper, section 4.1)
  *   continuous  the differences of a window reach back over the last three frames given out before it, as constants.
@@ -33,6 +33,7 @@ typedef struct L1L2PathConfig {
     double weights[3];  /* of eq. (3); 1, 1, 1 in eq. (5) */
     int window, overlap; /* N, K */
     L1L2StabJoin join;
+    L1L2StabMotionModel model; /* of F, and with it of B and of the paths */
     L1L2StabSolver solver;
     const L1L2StabLogger *log;
 } L1L2PathConfig;
@@ -61,7 +62,8 @@ void l1l2_path_reset(L1L2Path *path);
 void l1l2_path_set_lambda(L1L2Path *path, double lambda);
 void l1l2_path_set_crop_ratio(L1L2Path *path, double crop_ratio);
 
-/* The next frame's motion F (frame t to t-1); one that is not finite or not invertible counts as none. starts_path: F
+/* The next frame's motion F (frame t to t-1), of which the motion model takes what it can say; one that is not finite
+ * or not invertible counts as none. starts_path: F
  * is not used, the path before it ends. At most `window` - 1 frames may be waiting for l1l2_path_pull(). */
 void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path);
 

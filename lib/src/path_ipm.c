@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "mem.h"
-
-#define BAND (L1L2_DIM * (L1L2_HISTORY + 1)) /* the diagonal and 15 below it */
+#include "path_band.h"
 
 /* Typical distance of a slack from its bound at the start, diagonals: the size of a shake. */
 static const double initial_slack = 1e-2;
@@ -22,12 +21,13 @@ typedef struct Pair {
     double dv; /* step of v */
 } Pair;
 
+/* d: components of q. */
 struct L1L2PathIpm {
-    Pair *term, *crop;      /* by l1l2_term_index(); by 10 t + r */
-    double *band;           /* 4 n x BAND: lower band of the system, then of its Cholesky factor */
-    double *rhs;            /* 4 n: right-hand side, then the step in q */
-    double *gradient;       /* 4 n: stationarity in q at the iterate */
-    double *diagonal;       /* 4 n: of the system before its factorization */
+    Pair *term, *crop;      /* by l1l2_term_index(); by rows t + r */
+    double *band;           /* d n columns of band_of(d): the system, then its factors */
+    double *rhs;            /* d n: right-hand side, then the step in q */
+    double *gradient;       /* d n: stationarity in q at the iterate */
+    double *diagonal;       /* d n: of the system before its factorization */
     double (*q)[L1L2_DIM], (*best_q)[L1L2_DIM];
     double *slack;
     double (*term_dual)[2];
@@ -35,18 +35,24 @@ struct L1L2PathIpm {
     int terms, crops;       /* pairs in use */
 };
 
-L1L2PathIpm *l1l2_path_ipm_create(int capacity)
+/* The diagonal and what is below it: a third difference reaches three frames. */
+L1L2_PATH_INLINE int band_of(const int dim)
 {
-    const size_t n = (size_t)capacity, terms = n * L1L2_ORDERS * L1L2_DIM;
+    return dim * (L1L2_HISTORY + 1);
+}
+
+L1L2PathIpm *l1l2_path_ipm_create(int capacity, int dim)
+{
+    const size_t n = (size_t)capacity, size = n * (size_t)dim, terms = size * L1L2_ORDERS;
     L1L2PathIpm *ipm = l1l2_mem_new(1, sizeof *ipm);
     if (!ipm)
         return NULL;
     ipm->term = l1l2_mem_new(terms, sizeof *ipm->term);
-    ipm->crop = l1l2_mem_new(n * L1L2_CROP_ROWS, sizeof *ipm->crop);
-    ipm->band = l1l2_mem_new(n * L1L2_DIM + BAND, BAND * sizeof *ipm->band);
-    ipm->rhs = l1l2_mem_new(n * L1L2_DIM + BAND, sizeof *ipm->rhs);
-    ipm->gradient = l1l2_mem_new(n * L1L2_DIM, sizeof *ipm->gradient);
-    ipm->diagonal = l1l2_mem_new(n * L1L2_DIM, sizeof *ipm->diagonal);
+    ipm->crop = l1l2_mem_new(n * (size_t)l1l2_crop_row_count(dim), sizeof *ipm->crop);
+    ipm->band = l1l2_mem_new(size, (size_t)band_of(dim) * sizeof *ipm->band);
+    ipm->rhs = l1l2_mem_new(size, sizeof *ipm->rhs);
+    ipm->gradient = l1l2_mem_new(size, sizeof *ipm->gradient);
+    ipm->diagonal = l1l2_mem_new(size, sizeof *ipm->diagonal);
     ipm->q = l1l2_mem_new(n, sizeof *ipm->q);
     ipm->best_q = l1l2_mem_new(n, sizeof *ipm->best_q);
     ipm->slack = l1l2_mem_new(terms, sizeof *ipm->slack);
@@ -79,27 +85,29 @@ void l1l2_path_ipm_free(L1L2PathIpm *ipm)
 
 /* Strictly feasible on both sides: q = c, e = |D c| + initial_slack; duals half the weight for terms (their sum is the
  * weight, from here on), and of the same product s y for crop rows. */
-static void start(L1L2PathIpm *ipm, const L1L2PathProblem *p)
+L1L2_PATH_INLINE void start(L1L2PathIpm *ipm, const L1L2PathProblem *p, const int dim)
 {
     const int n = p->count;
     memcpy(ipm->q, p->camera, (size_t)n * sizeof *ipm->q);
-    ipm->terms = l1l2_term_index(L1L2_ORDERS + 1, n, p->history, 0, 0);
-    ipm->crops = L1L2_CROP_ROWS * n;
+    ipm->terms = l1l2_term_components(p);
+    ipm->crops = p->rows * n;
     Pair *pair = ipm->term;
     for (int order = 1; order <= L1L2_ORDERS; order++)
         for (int t = l1l2_terms_first(order, p->history); t < n; t++)
-            for (int j = 0; j < L1L2_DIM; j++, pair++) {
+            for (int j = 0; j < dim; j++, pair++) {
                 const double v = l1l2_path_difference(p, (const double(*)[L1L2_DIM])ipm->q, order, t, j);
+                *pair = (Pair){.dv = 0.0}; /* a step that gave out is not carried into the next window */
                 pair->s[0] = fabs(v) + initial_slack - v;
                 pair->s[1] = fabs(v) + initial_slack + v;
                 pair->y[0] = pair->y[1] = 0.5 * p->weight[order - 1];
             }
     pair = ipm->crop;
     for (int t = 0; t < n; t++)
-        for (int r = 0; r < L1L2_CROP_ROWS; r++, pair++) {
+        for (int r = 0; r < p->rows; r++, pair++) {
             double v = 0.0;
-            for (int j = 0; j < L1L2_DIM; j++)
+            for (int j = 0; j < dim; j++)
                 v += p->G[t][r][j] * ipm->q[t][j];
+            *pair = (Pair){.dv = 0.0};
             pair->s[0] = p->hi[t][r] - v;
             pair->s[1] = v - p->lo[t][r];
             for (int side = 0; side < 2; side++)
@@ -108,23 +116,24 @@ static void start(L1L2PathIpm *ipm, const L1L2PathProblem *p)
 }
 
 /* rhs += sum over pairs of value(pair) * gradient of its form. */
-static void add_gradients(const L1L2PathIpm *ipm, const L1L2PathProblem *p, double (*term_value)(const Pair *),
-                          double (*crop_value)(const Pair *), double *rhs)
+L1L2_PATH_INLINE void add_gradients(const L1L2PathIpm *ipm, const L1L2PathProblem *p,
+                                    double (*term_value)(const Pair *), double (*crop_value)(const Pair *),
+                                    double *rhs, const int dim)
 {
     const Pair *pair = ipm->term;
     for (int order = 1; order <= L1L2_ORDERS; order++)
         for (int t = l1l2_terms_first(order, p->history); t < p->count; t++)
-            for (int j = 0; j < L1L2_DIM; j++, pair++) {
+            for (int j = 0; j < dim; j++, pair++) {
                 const double v = term_value(pair);
                 for (int m = 0; m <= order && m <= t; m++)
-                    rhs[L1L2_DIM * (t - m) + j] += v * l1l2_difference[order - 1][m];
+                    rhs[dim * (t - m) + j] += v * l1l2_difference[order - 1][m];
             }
     pair = ipm->crop;
     for (int t = 0; t < p->count; t++)
-        for (int r = 0; r < L1L2_CROP_ROWS; r++, pair++) {
+        for (int r = 0; r < p->rows; r++, pair++) {
             const double v = crop_value(pair);
-            for (int j = 0; j < L1L2_DIM; j++)
-                rhs[L1L2_DIM * t + j] += v * p->G[t][r][j];
+            for (int j = 0; j < dim; j++)
+                rhs[dim * t + j] += v * p->G[t][r][j];
         }
 }
 
@@ -137,87 +146,49 @@ static double dual_force(const Pair *pair)
  * objective's distance from the optimum: the Lagrangian is strongly convex by the L2 term, so r moves its minimum by at
  * most |r_t|^2 / (4 lambda_t); and since the crop rows keep every component within less than a diagonal of anywhere
  * else that is feasible, by at most |r|_1. */
-static double stationarity(const L1L2PathIpm *ipm, const L1L2PathProblem *p, double *r)
+L1L2_PATH_INLINE double stationarity(const L1L2PathIpm *ipm, const L1L2PathProblem *p, double *r, const int dim)
 {
     for (int t = 0; t < p->count; t++)
-        for (int j = 0; j < L1L2_DIM; j++)
-            r[L1L2_DIM * t + j] = 2.0 * p->lambda[t] * (ipm->q[t][j] - p->camera[t][j]);
-    add_gradients(ipm, p, dual_force, dual_force, r);
+        for (int j = 0; j < dim; j++)
+            r[dim * t + j] = 2.0 * p->lambda[t] * (ipm->q[t][j] - p->camera[t][j]);
+    add_gradients(ipm, p, dual_force, dual_force, r, dim);
     double bound = 0.0;
-    for (int i = 0; i < L1L2_DIM * p->count; i++) {
-        const double linear = fabs(r[i]), lambda = p->lambda[i / L1L2_DIM];
+    for (int i = 0; i < dim * p->count; i++) {
+        const double linear = fabs(r[i]), lambda = p->lambda[i / dim];
         bound += linear < 4.0 * lambda ? linear * linear / (4.0 * lambda) : linear;
     }
     return bound;
 }
 
 /* The system in q after all slacks and duals are eliminated. */
-static void assemble(L1L2PathIpm *ipm, const L1L2PathProblem *p)
+L1L2_PATH_INLINE void assemble(L1L2PathIpm *ipm, const L1L2PathProblem *p, const int dim)
 {
-    const int n = p->count;
-    memset(ipm->band, 0, (size_t)(L1L2_DIM * n) * BAND * sizeof *ipm->band);
+    const int n = p->count, band = band_of(dim);
+    double *system = ipm->band;
+    memset(system, 0, (size_t)(dim * n * band) * sizeof *system);
     for (int t = 0; t < n; t++)
-        for (int j = 0; j < L1L2_DIM; j++)
-            ipm->band[(L1L2_DIM * t + j) * BAND] = 2.0 * p->lambda[t];
+        for (int j = 0; j < dim; j++)
+            system[(dim * t + j) * band] = 2.0 * p->lambda[t];
     const Pair *pair = ipm->term;
     for (int order = 1; order <= L1L2_ORDERS; order++)
         for (int t = l1l2_terms_first(order, p->history); t < n; t++)
-            for (int j = 0; j < L1L2_DIM; j++, pair++) {
+            for (int j = 0; j < dim; j++, pair++) {
                 const double d0 = pair->y[0] / pair->s[0], d1 = pair->y[1] / pair->s[1];
                 const double weight = 4.0 * d0 * d1 / (d0 + d1);
                 const double *c = l1l2_difference[order - 1];
                 for (int a = 0; a <= order && a <= t; a++)     /* frame t - a, the earlier one, is the column */
                     for (int b = 0; b <= a; b++)
-                        ipm->band[(L1L2_DIM * (t - a) + j) * BAND + L1L2_DIM * (a - b)] += weight * c[a] * c[b];
+                        system[(dim * (t - a) + j) * band + dim * (a - b)] += weight * c[a] * c[b];
             }
     pair = ipm->crop;
     for (int t = 0; t < n; t++)
-        for (int r = 0; r < L1L2_CROP_ROWS; r++, pair++) {
+        for (int r = 0; r < p->rows; r++, pair++) {
             const double *g = p->G[t][r];
             const double weight = pair->y[0] / pair->s[0] + pair->y[1] / pair->s[1];
-            for (int a = 0; a < L1L2_DIM; a++)
-                for (int b = a; b < L1L2_DIM; b++)
-                    ipm->band[(L1L2_DIM * t + a) * BAND + b - a] += weight * g[a] * g[b];
+            for (int a = 0; a < dim; a++)
+                for (int b = a; b < dim; b++)
+                    system[(dim * t + a) * band + b - a] += weight * g[a] * g[b];
         }
-}
-
-/* Cholesky in place, L D L': unit L below the diagonal, D on it. Where rounding has eaten a pivot (lambda 0 and no
- * active crop row: the path may be anywhere) its component is not moved. False where the numbers give out. */
-static bool factorize(double *band, const double *diagonal, int size)
-{
-    for (int i = 0; i < size; i++) {
-        double *column = band + (size_t)i * BAND;
-        const double d = column[0] > 1e-14 * diagonal[i] ? column[0] : 1e100;
-        if (!isfinite(column[0]))
-            return false;
-        column[0] = d;
-        const int reach = size - i < BAND ? size - i : BAND;
-        for (int k = 1; k < reach; k++) {
-            const double l = column[k] / d;
-            double *target = band + (size_t)(i + k) * BAND;
-            for (int m = k; m < reach; m++)
-                target[m - k] -= l * column[m];
-        }
-        for (int k = 1; k < reach; k++)
-            column[k] /= d;
-    }
-    return true;
-}
-
-static void substitute(const double *band, int size, double *x)
-{
-    for (int i = 0; i < size; i++) {
-        const int reach = size - i < BAND ? size - i : BAND;
-        for (int k = 1; k < reach; k++)
-            x[i + k] -= band[(size_t)i * BAND + k] * x[i];
-    }
-    for (int i = size - 1; i >= 0; i--) {
-        const int reach = size - i < BAND ? size - i : BAND;
-        double sum = x[i] / band[(size_t)i * BAND];
-        for (int k = 1; k < reach; k++)
-            sum -= band[(size_t)i * BAND + k] * x[i + k];
-        x[i] = sum;
-    }
 }
 
 /* The target of a side's s y: mu, less what the affine step's own second-order term will add. The affine step itself
@@ -263,39 +234,39 @@ static void move_crop(Pair *pair)
 }
 
 /* The step of every pair's form, from the step in q. */
-static void step_forms(L1L2PathIpm *ipm, const L1L2PathProblem *p)
+L1L2_PATH_INLINE void step_forms(L1L2PathIpm *ipm, const L1L2PathProblem *p, const int dim)
 {
     const double *step = ipm->rhs;
     Pair *pair = ipm->term;
     for (int order = 1; order <= L1L2_ORDERS; order++)
         for (int t = l1l2_terms_first(order, p->history); t < p->count; t++)
-            for (int j = 0; j < L1L2_DIM; j++, pair++) {
+            for (int j = 0; j < dim; j++, pair++) {
                 pair->dv = 0.0;
                 for (int m = 0; m <= order && m <= t; m++)
-                    pair->dv += l1l2_difference[order - 1][m] * step[L1L2_DIM * (t - m) + j];
+                    pair->dv += l1l2_difference[order - 1][m] * step[dim * (t - m) + j];
             }
     pair = ipm->crop;
     for (int t = 0; t < p->count; t++)
-        for (int r = 0; r < L1L2_CROP_ROWS; r++, pair++) {
+        for (int r = 0; r < p->rows; r++, pair++) {
             pair->dv = 0.0;
-            for (int j = 0; j < L1L2_DIM; j++)
-                pair->dv += p->G[t][r][j] * step[L1L2_DIM * t + j];
+            for (int j = 0; j < dim; j++)
+                pair->dv += p->G[t][r][j] * step[dim * t + j];
         }
 }
 
 /* One direction: targets, right-hand side, solution, and every pair's step. */
-static void direction(L1L2PathIpm *ipm, const L1L2PathProblem *p, double mu, bool corrector)
+L1L2_PATH_INLINE void direction(L1L2PathIpm *ipm, const L1L2PathProblem *p, double mu, bool corrector, const int dim)
 {
-    const int size = L1L2_DIM * p->count;
+    const int size = dim * p->count;
     double *step = ipm->rhs;
     aim(ipm->term, ipm->terms, mu, corrector);
     aim(ipm->crop, ipm->crops, mu, corrector);
     memcpy(step, ipm->gradient, (size_t)size * sizeof *step);
-    add_gradients(ipm, p, term_force, crop_force, step);
+    add_gradients(ipm, p, term_force, crop_force, step, dim);
     for (int i = 0; i < size; i++)
         step[i] = -step[i];
-    substitute(ipm->band, size, step);
-    step_forms(ipm, p);
+    l1l2_path_band_solve(ipm->band, step, size, band_of(dim));
+    step_forms(ipm, p, dim);
     for (int i = 0; i < ipm->terms; i++)
         move_term(&ipm->term[i]);
     for (int i = 0; i < ipm->crops; i++)
@@ -334,27 +305,27 @@ static void move(Pair *pair, int count, double alpha)
 }
 
 /* Predictor and corrector with one factorization. False where the numbers give out. */
-static bool iterate(L1L2PathIpm *ipm, const L1L2PathProblem *p, double gap)
+L1L2_PATH_INLINE bool iterate(L1L2PathIpm *ipm, const L1L2PathProblem *p, double gap, const int dim)
 {
-    const int sides = 2 * (ipm->terms + ipm->crops);
-    assemble(ipm, p);
-    for (int i = 0; i < L1L2_DIM * p->count; i++)
-        ipm->diagonal[i] = ipm->band[(size_t)i * BAND];
-    if (!factorize(ipm->band, ipm->diagonal, L1L2_DIM * p->count))
+    const int sides = 2 * (ipm->terms + ipm->crops), size = dim * p->count;
+    assemble(ipm, p, dim);
+    for (int i = 0; i < size; i++)
+        ipm->diagonal[i] = ipm->band[i * band_of(dim)];
+    if (!l1l2_path_band_factorize(ipm->band, ipm->diagonal, size, band_of(dim)))
         return false;
-    direction(ipm, p, 0.0, false);
+    direction(ipm, p, 0.0, false, dim);
     double alpha = reach(ipm->crop, ipm->crops, reach(ipm->term, ipm->terms, 1.0));
     const double left = gap_after(ipm->term, ipm->terms, alpha) + gap_after(ipm->crop, ipm->crops, alpha);
     const double centering = (left / gap) * (left / gap) * (left / gap);
-    direction(ipm, p, centering * gap / sides, true);
+    direction(ipm, p, centering * gap / sides, true, dim);
     alpha = reach(ipm->crop, ipm->crops, reach(ipm->term, ipm->terms, 1.0 / step_fraction)) * step_fraction;
     if (!isfinite(alpha))
         return false;
     move(ipm->term, ipm->terms, alpha);
     move(ipm->crop, ipm->crops, alpha);
     for (int t = 0; t < p->count; t++)
-        for (int j = 0; j < L1L2_DIM; j++)
-            ipm->q[t][j] += alpha * ipm->rhs[L1L2_DIM * t + j];
+        for (int j = 0; j < dim; j++)
+            ipm->q[t][j] += alpha * ipm->rhs[dim * t + j];
     return true;
 }
 
@@ -368,27 +339,33 @@ static void keep(L1L2PathIpm *ipm, const L1L2PathProblem *p)
         ipm->term_dual[i][1] = ipm->term[i].y[1];
     }
     for (int i = 0; i < ipm->crops; i++)
-        ipm->crop_dual[i / L1L2_CROP_ROWS][i % L1L2_CROP_ROWS] = ipm->crop[i].y[0] - ipm->crop[i].y[1];
+        ipm->crop_dual[i / p->rows][i % p->rows] = ipm->crop[i].y[0] - ipm->crop[i].y[1];
 }
 
-L1L2PathIpmReport l1l2_path_ipm_solve(L1L2PathIpm *ipm, const L1L2PathProblem *p, L1L2PathPoint *point)
+L1L2_PATH_INLINE L1L2PathIpmReport solve(L1L2PathIpm *ipm, const L1L2PathProblem *p, const int dim)
 {
     L1L2PathIpmReport best = {.bound = HUGE_VAL};
     int since_best = 0;
-    start(ipm, p);
+    start(ipm, p, dim);
     keep(ipm, p);
     for (int iteration = 0; iteration < max_iterations; iteration++) {
         const double gap = gap_after(ipm->term, ipm->terms, 0.0) + gap_after(ipm->crop, ipm->crops, 0.0);
-        const double bound = gap + stationarity(ipm, p, ipm->gradient);
+        const double bound = gap + stationarity(ipm, p, ipm->gradient, dim);
         if (bound < best.bound) {
             best = (L1L2PathIpmReport){.iterations = iteration, .bound = bound};
             since_best = 0;
             keep(ipm, p);
         }
         /* Near the limit of double precision iterates can get worse again: the best one is kept. */
-        if (bound <= bound_goal || ++since_best > 2 || !iterate(ipm, p, gap))
+        if (bound <= bound_goal || ++since_best > 2 || !iterate(ipm, p, gap, dim))
             break;
     }
+    return best;
+}
+
+L1L2PathIpmReport l1l2_path_ipm_solve(L1L2PathIpm *ipm, const L1L2PathProblem *p, L1L2PathPoint *point)
+{
+    L1L2PathIpmReport best = p->dim == 2 ? solve(ipm, p, 2) : p->dim == 4 ? solve(ipm, p, 4) : solve(ipm, p, 6);
     *point = (L1L2PathPoint){ipm->best_q, ipm->slack, ipm->term_dual, ipm->crop_dual};
     const double objective = l1l2_path_objective(p, (const double(*)[L1L2_DIM])point->q);
     best.converged = best.bound <= enough_absolute + enough_relative * objective;

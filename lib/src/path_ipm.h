@@ -6,8 +6,8 @@
  * e - v and e + v of a term's component (v = D^k q), hi - v and v - lo of a crop row (v = G q). The slacks e and the
  * duals are eliminated by hand: a pair adds one weight to v's outer product, 4 d1 d2 / (d1 + d2) for a term and
  * d1 + d2 for a crop row, with d = y/s of its two sides. What is left is one positive definite system in q, banded in
- * frame order with half-bandwidth 15, since a third difference reaches three frames of four components. So an
- * iteration is O(n), and no memory is allocated after create.
+ * frame order: a third difference reaches three frames, of 2, 4 or 6 components each (path_band.h; all loops over
+ * components are compiled for each number). So an iteration is O(n), and no memory is allocated after create.
  *
  * q = c (all B_t = identity) is strictly feasible; every iterate stays so. What converges is the stationarity in q and
  * the gap, the sum of all s y; together they bound how far the objective is above its optimum: a certificate.
@@ -25,8 +25,8 @@ typedef struct L1L2PathIpmReport {
     double bound;   /* the objective is at most this far above its optimum */
 } L1L2PathIpmReport;
 
-/* For windows of up to `capacity` frames. NULL when out of memory. */
-L1L2PathIpm *l1l2_path_ipm_create(int capacity);
+/* For windows of up to `capacity` frames with `dim` components. NULL when out of memory. */
+L1L2PathIpm *l1l2_path_ipm_create(int capacity, int dim);
 void l1l2_path_ipm_free(L1L2PathIpm *ipm);
 
 /* Solve into *point, whose arrays belong to ipm and last until the next call. The point is finite and strictly within

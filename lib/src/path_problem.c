@@ -1,28 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 #include "path_problem.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "mem.h"
 
 const double l1l2_difference[L1L2_ORDERS][L1L2_HISTORY + 1] = {{1, -1, 0, 0}, {1, -2, 1, 0}, {1, -3, 3, -1}};
 
-void l1l2_q_from_mat(const L1L2Mat *m, double q[L1L2_DIM])
-{
-    q[0] = 0.5 * m->m[0], q[1] = 0.5 * m->m[3], q[2] = m->m[2], q[3] = m->m[5];
-}
-
-L1L2Mat l1l2_q_to_mat(const double q[L1L2_DIM])
-{
-    return l1l2_mat_similarity(2.0 * q[0], 2.0 * q[1], q[2], q[3]);
-}
-
-L1L2PathProblem *l1l2_path_problem_create(int capacity)
+L1L2PathProblem *l1l2_path_problem_create(int capacity, int dim)
 {
     const size_t n = (size_t)capacity;
     L1L2PathProblem *p = l1l2_mem_new(1, sizeof *p);
     if (!p)
         return NULL;
+    p->dim = dim;
+    p->rows = l1l2_crop_row_count(dim);
     p->weight[0] = p->weight[1] = p->weight[2] = 1.0;
     p->camera = l1l2_mem_new(n, sizeof *p->camera);
     p->lambda = l1l2_mem_new(n, sizeof *p->lambda);
@@ -49,11 +42,10 @@ void l1l2_path_problem_free(L1L2PathProblem *p)
 
 void l1l2_path_problem_set(L1L2PathProblem *p, int t, const L1L2Mat *camera, double lambda, const L1L2Crop *crop)
 {
-    l1l2_q_from_mat(camera, p->camera[t]);
+    assert(crop->dim == p->dim);
+    l1l2_mat_to_q(camera, p->camera[t]);
     p->lambda[t] = lambda;
     l1l2_crop_rows(crop, camera, p->G[t], p->lo[t], p->hi[t]);
-    for (int r = 0; r < L1L2_CROP_ROWS; r++)
-        p->G[t][r][0] *= 2.0, p->G[t][r][1] *= 2.0; /* rows on (a, b, x, y) become rows on q */
 }
 
 double l1l2_path_difference(const L1L2PathProblem *p, const double (*q)[L1L2_DIM], int order, int t, int j)
@@ -69,10 +61,10 @@ double l1l2_path_objective(const L1L2PathProblem *p, const double (*q)[L1L2_DIM]
     double sum = 0.0;
     for (int order = 1; order <= L1L2_ORDERS; order++)
         for (int t = l1l2_terms_first(order, p->history); t < p->count; t++)
-            for (int j = 0; j < L1L2_DIM; j++)
+            for (int j = 0; j < p->dim; j++)
                 sum += p->weight[order - 1] * fabs(l1l2_path_difference(p, q, order, t, j));
     for (int t = 0; t < p->count; t++)
-        for (int j = 0; j < L1L2_DIM; j++)
+        for (int j = 0; j < p->dim; j++)
             sum += p->lambda[t] * (q[t][j] - p->camera[t][j]) * (q[t][j] - p->camera[t][j]);
     return sum;
 }
@@ -81,9 +73,9 @@ double l1l2_path_excess(const L1L2PathProblem *p, const double (*q)[L1L2_DIM])
 {
     double worst = -HUGE_VAL;
     for (int t = 0; t < p->count; t++)
-        for (int r = 0; r < L1L2_CROP_ROWS; r++) {
+        for (int r = 0; r < p->rows; r++) {
             double value = 0.0;
-            for (int j = 0; j < L1L2_DIM; j++)
+            for (int j = 0; j < p->dim; j++)
                 value += p->G[t][r][j] * q[t][j];
             worst = fmax(worst, fmax(value - p->hi[t][r], p->lo[t][r] - value));
         }
@@ -101,9 +93,14 @@ int l1l2_terms(int order, int count, int history)
     return terms > 0 ? terms : 0;
 }
 
-int l1l2_term_index(int order, int count, int history, int term, int component)
+int l1l2_term_index(const L1L2PathProblem *p, int order, int term, int component)
 {
     for (int below = 1; below < order; below++)
-        term += l1l2_terms(below, count, history);
-    return L1L2_DIM * term + component;
+        term += l1l2_terms(below, p->count, p->history);
+    return p->dim * term + component;
+}
+
+int l1l2_term_components(const L1L2PathProblem *p)
+{
+    return l1l2_term_index(p, L1L2_ORDERS + 1, 0, 0);
 }

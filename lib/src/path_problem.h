@@ -5,9 +5,9 @@
  *   minimise over q_t:   sum_k w_k sum_t |D^k q_t|_1  +  sum_t lambda_t |q_t - c_t|^2,      k = 1, 2, 3
  *   subject to           lo_t <= G_t q_t <= hi_t        (inclusion and proximity, crop.h)
  *
- * q_t = (a/2, b/2, x, y) of the similarity P_t, c_t the same of C_t, in diagonals, relative to the window's first
- * frame. The linear part is halved because a change of a or b by d moves the frame's corner by d/2 diagonals: it is
- * the variable that is scaled, in both norms. w_k = 1 (eq. 5); lambda_t is lambda * 30 / frame rate.
+ * q_t are the parameters of P_t (geom.h: 2, 4 or 6 by the motion model), c_t those of C_t, in diagonals, relative to
+ * the window's first frame. They are scaled so that all move the frame's corners alike: it is the variable that is
+ * scaled, in both norms. w_k = 1 (eq. 5); lambda_t is lambda * 30 / frame rate.
  *
  * D^k q_t is the k-th backward difference, a "term". It reaches back over the `history` last frames that were given
  * out before the window (0 to 3; the continuous join), which are constants; terms that would reach further do not
@@ -20,11 +20,12 @@
 
 #include "crop.h"
 
-#define L1L2_DIM 4     /* components of q_t */
 #define L1L2_ORDERS 3  /* of differences */
 #define L1L2_HISTORY 3 /* frames that the third difference reaches back */
 
 typedef struct L1L2PathProblem {
+    int dim;     /* components of q_t that are used: 2, 4 or 6 */
+    int rows;    /* of G_t that are used: l1l2_crop_row_count(dim) */
     int count;   /* n, frames, >= 1 */
     int history; /* frames of `past` that exist, 0..3 */
     double past[L1L2_HISTORY][L1L2_DIM];   /* q of the frames before the window, newest last: past[2] is frame -1 */
@@ -37,7 +38,7 @@ typedef struct L1L2PathProblem {
 } L1L2PathProblem;
 
 /* A point with its duals. Term components are counted order by order: component j of term i of order k is number
- * 4 (terms of the orders below k + i) + j; see l1l2_term_index(). */
+ * dim (terms of the orders below k + i) + j; see l1l2_term_index(). */
 typedef struct L1L2PathPoint {
     double (*q)[L1L2_DIM];              /* n */
     double *slack;                      /* term components: e >= |D^k q| */
@@ -48,21 +49,20 @@ typedef struct L1L2PathPoint {
 /* Coefficients of the backward differences: D^k q_t = sum_m l1l2_difference[k-1][m] q_{t-m}. */
 extern const double l1l2_difference[L1L2_ORDERS][L1L2_HISTORY + 1];
 
-/* q of a similarity, and back. */
-void l1l2_q_from_mat(const L1L2Mat *m, double q[L1L2_DIM]);
-L1L2Mat l1l2_q_to_mat(const double q[L1L2_DIM]);
-
-/* Arrays for up to `capacity` frames; weights 1, the rest 0. NULL when out of memory. */
-L1L2PathProblem *l1l2_path_problem_create(int capacity);
+/* Arrays for up to `capacity` frames of a motion model of `dim` parameters; weights 1, the rest 0. NULL when out of
+ * memory. */
+L1L2PathProblem *l1l2_path_problem_create(int capacity, int dim);
 void l1l2_path_problem_free(L1L2PathProblem *p);
 
-/* Fills in frame t, whose camera path (a similarity) is `camera`. */
+/* Fills in frame t, whose camera path (of the motion model, as is `crop`) is `camera`. */
 void l1l2_path_problem_set(L1L2PathProblem *p, int t, const L1L2Mat *camera, double lambda, const L1L2Crop *crop);
 
 /* Frame of an order's first term, and how many terms it has. order: 1, 2, 3. */
 int l1l2_terms_first(int order, int history);
 int l1l2_terms(int order, int count, int history);
-int l1l2_term_index(int order, int count, int history, int term, int component);
+int l1l2_term_index(const L1L2PathProblem *p, int order, int term, int component);
+/* Components of all terms. */
+int l1l2_term_components(const L1L2PathProblem *p);
 
 /* D^order q at frame t, component j; q: n rows. */
 double l1l2_path_difference(const L1L2PathProblem *p, const double (*q)[L1L2_DIM], int order, int t, int j);

@@ -22,13 +22,13 @@ struct L1L2PathSolver {
     double *z, *y;
 };
 
-L1L2PathSolver *l1l2_path_solver_create(int capacity)
+L1L2PathSolver *l1l2_path_solver_create(int capacity, int dim)
 {
     L1L2PathSolver *s = l1l2_mem_new(1, sizeof *s);
     if (!s)
         return NULL;
-    s->ipm = l1l2_path_ipm_create(capacity);
-    s->qp = l1l2_path_qp_create(capacity);
+    s->ipm = l1l2_path_ipm_create(capacity, dim);
+    s->qp = l1l2_path_qp_create(capacity, dim);
     if (s->qp) {
         s->z = l1l2_mem_new((size_t)s->qp->max_cols, sizeof *s->z);
         s->y = l1l2_mem_new((size_t)s->qp->max_rows, sizeof *s->y);
@@ -62,13 +62,14 @@ static bool run_osqp(L1L2PathSolver *s, const L1L2QpSettings *settings, L1L2Solv
     return qp.converged;
 }
 
-static bool take_osqp(const L1L2PathSolver *s, int count, double (*q)[L1L2_DIM])
+static bool take_osqp(const L1L2PathSolver *s, const L1L2PathProblem *p, double (*q)[L1L2_DIM])
 {
-    for (int i = 0; i < L1L2_DIM * count; i++)
+    for (int i = 0; i < p->dim * p->count; i++)
         if (!isfinite(s->z[i]))
             return false;
-    for (int i = 0; i < L1L2_DIM * count; i++)
-        q[i / L1L2_DIM][i % L1L2_DIM] = s->z[i];
+    for (int t = 0; t < p->count; t++)
+        for (int j = 0; j < p->dim; j++)
+            q[t][j] = s->z[l1l2_col_q(p, t, j)];
     return true;
 }
 
@@ -76,8 +77,9 @@ static void start_from_camera(L1L2PathSolver *s, const L1L2PathProblem *p)
 {
     memset(s->z, 0, (size_t)s->qp->cols * sizeof *s->z);
     memset(s->y, 0, (size_t)s->qp->rows * sizeof *s->y);
-    for (int i = 0; i < L1L2_DIM * p->count; i++)
-        s->z[i] = p->camera[i / L1L2_DIM][i % L1L2_DIM];
+    for (int t = 0; t < p->count; t++)
+        for (int j = 0; j < p->dim; j++)
+            s->z[l1l2_col_q(p, t, j)] = p->camera[t][j];
 }
 
 L1L2SolverReport l1l2_path_solver_solve(L1L2PathSolver *s, L1L2StabSolver choice, const L1L2PathProblem *p,
@@ -103,7 +105,7 @@ L1L2SolverReport l1l2_path_solver_solve(L1L2PathSolver *s, L1L2StabSolver choice
         if (report.converged) {
             if (arrived)
                 report.decided_by = L1L2STAB_SOLVER_CHECKED;
-        } else if ((arrived || choice == L1L2STAB_SOLVER_OSQP) && take_osqp(s, p->count, q)) {
+        } else if ((arrived || choice == L1L2STAB_SOLVER_OSQP) && take_osqp(s, p, q)) {
             report.decided_by = L1L2STAB_SOLVER_OSQP;
             report.converged = arrived;
         }

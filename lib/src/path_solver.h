@@ -24,8 +24,8 @@ typedef struct L1L2SolverReport {
     double excess;               /* the largest violation of a crop row, diagonals; <= 0 where all hold */
 } L1L2SolverReport;
 
-/* For windows of up to `capacity` frames. NULL when out of memory. */
-L1L2PathSolver *l1l2_path_solver_create(int capacity);
+/* For windows of up to `capacity` frames with `dim` components. NULL when out of memory. */
+L1L2PathSolver *l1l2_path_solver_create(int capacity, int dim);
 void l1l2_path_solver_free(L1L2PathSolver *solver);
 
 /* Solve p into q (n rows), which is always finite. choice: CHECKED, PREDICTOR or OSQP. */

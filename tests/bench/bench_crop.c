@@ -54,7 +54,8 @@ static void drain(L1L2Path *path, const L1L2PathConfig *cfg, Shake *before, Shak
 
 static void smooth(FILE *file, double ratio, Shake *before, Shake *after)
 {
-    L1L2PathConfig cfg = {.lambda = 0.5, .crop_ratio = ratio, .weights = {1, 1, 1}, .window = 150, .overlap = 100};
+    L1L2PathConfig cfg = {.lambda = 0.5, .crop_ratio = ratio, .weights = {1, 1, 1}, .window = 150, .overlap = 100,
+                          .model = L1L2STAB_MOTION_MODEL_SIMILARITY};
     L1L2Path *path;
     rewind(file);
     if (fscanf(file, "# %d %d", &cfg.width, &cfg.height) != 2 || l1l2_path_create(&path, &cfg) != L1L2STAB_OK)

@@ -26,7 +26,7 @@ static inline L1L2PathConfig defaults(void)
 {
     return (L1L2PathConfig){.width = 640, .height = 360, .lambda = 0.5, .frame_rate = 30, .crop_ratio = 0.9,
                             .weights = {1, 1, 1}, .window = 150, .overlap = 100,
-                            .join = L1L2STAB_JOIN_CONTINUOUS};
+                            .join = L1L2STAB_JOIN_CONTINUOUS, .model = L1L2STAB_MOTION_MODEL_SIMILARITY};
 }
 
 /* Pushes all frames, pulling as the stabilizer does: frame t once frame t + N - 1 has come, or when it is hurried. */

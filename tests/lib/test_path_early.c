@@ -68,7 +68,7 @@ START_TEST(hurried_at_random_nothing_is_lost_and_all_stays_inside)
         r->starts[120] = true;
         hurry_at_random(r, cfg.window, (uint64_t)i + 77);
         run(&cfg, r);
-        const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, cfg.crop_ratio);
+        const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
         int early = 0;
         for (int t = 0; t < r->frames; t++) {
             ck_assert_uint_eq(r->out[t].path_index, (uint64_t)(t < 120 ? t : t - 120));

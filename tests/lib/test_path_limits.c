@@ -11,7 +11,7 @@ START_TEST(every_update_transform_stays_inside_whatever_the_motion)
             cfg.window = 40, cfg.overlap = join == L1L2STAB_JOIN_BLEND ? 12 : 20;
             cfg.join = (L1L2StabJoin)join;
             cfg.crop_ratio = 0.8;
-            const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, cfg.crop_ratio);
+            const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
             Run *r = shaky_run(200, 2.0, shakes[i], (uint64_t)i);
             run(&cfg, r);
             for (int t = 0; t < r->frames; t++) {
@@ -26,7 +26,7 @@ END_TEST
 START_TEST(numbers_that_no_camera_gives_are_survived)
 {
     const L1L2PathConfig cfg = defaults();
-    const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, cfg.crop_ratio);
+    const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
     Run *r = new_run(400);
     int fallbacks = 0;
     for (int t = 100; t < 250; t++)
@@ -47,7 +47,7 @@ END_TEST
 START_TEST(where_no_solver_arrives_the_path_goes_on_without_a_jump)
 {
     const L1L2PathConfig cfg = defaults();
-    const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, cfg.crop_ratio);
+    const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
     Run *r = shaky_run(480, 1.0, 2.0, 8);
     L1L2Path *path;
     ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
@@ -93,7 +93,7 @@ START_TEST(a_crop_that_changes_is_ramped_and_always_met)
             continue;
         L1L2PathFrame *f = &r->out[pulled];
         ck_assert(l1l2_path_pull(path, f));
-        const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, f->crop_ratio);
+        const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, f->crop_ratio, 4);
         ck_assert_double_le(l1l2_crop_excess(&crop, &f->B), 1e-12);
         ck_assert_double_le(fabs(f->crop_ratio - before), L1L2_CROP_STEP + 1e-12);
         ck_assert(!f->fallback);
@@ -151,7 +151,7 @@ END_TEST
 START_TEST(a_zoom_of_ten_and_jumps_of_half_a_frame_are_solved)
 {
     const L1L2PathConfig cfg = defaults();
-    const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, cfg.crop_ratio);
+    const L1L2Crop crop = l1l2_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
     Run *zoom = wandering_run(450, 0.5, 10.0, 3.0, 5), *jumps = shaky_run(450, 0.5, 3.0, 5);
     for (int t = 100; t < 250; t++)
         zoom->F[t] = l1l2_mat_mul(zoom->F[t], l1l2_mat_similarity(pow(10.0, 1.0 / 150.0), 0.0, 0.0, 0.0));

@@ -11,51 +11,59 @@ static double uniform(L1L2Rng *rng, double low, double high)
 }
 
 /* A window on a random walk with `history` frames before it. */
-static L1L2PathProblem *random_window(int count, int history, double lambda, uint64_t seed)
+static L1L2PathProblem *random_window(int dim, int count, int history, double lambda, uint64_t seed)
 {
     L1L2Rng rng = l1l2_rng_seeded(seed);
-    L1L2PathProblem *p = l1l2_path_problem_create(count);
-    const L1L2Crop crop = l1l2_crop_make(640, 360, 0.8);
+    L1L2PathProblem *p = l1l2_path_problem_create(count, dim);
+    const L1L2Crop crop = l1l2_crop_make(640, 360, 0.8, dim);
     L1L2Mat camera = l1l2_mat_identity();
     p->count = count;
     p->history = history;
     for (int t = 0; t < count; t++) {
         l1l2_path_problem_set(p, t, &camera, lambda * uniform(&rng, 0.5, 1.5), &crop);
-        camera = l1l2_mat_mul(camera, l1l2_mat_similarity(1.0, uniform(&rng, -0.02, 0.02), uniform(&rng, -0.02, 0.03),
-                                                          uniform(&rng, -0.02, 0.02)));
+        double q[L1L2_DIM];
+        for (int j = 0; j < L1L2_DIM; j++)
+            q[j] = (j == 2 ? 0.5 : 0.0) + uniform(&rng, -0.02, 0.03);
+        camera = l1l2_mat_mul(camera, l1l2_mat_from_q(q, dim));
     }
     for (int i = 0; i < L1L2_HISTORY; i++)
-        for (int j = 0; j < L1L2_DIM; j++)
-            p->past[i][j] = (j == 0 ? 0.5 : 0.0) + uniform(&rng, -0.02, 0.02);
+        for (int j = 0; j < dim; j++)
+            p->past[i][j] = (j == 2 ? 0.5 : 0.0) + uniform(&rng, -0.02, 0.02);
     return p;
+}
+
+static void check_bijections(const L1L2PathProblem *p)
+{
+    const int cols = l1l2_cols(p), rows = l1l2_rows(p);
+    int *col_seen = calloc((size_t)cols, sizeof *col_seen), *row_seen = calloc((size_t)rows, sizeof *row_seen);
+    for (int t = 0; t < p->count; t++) {
+        for (int j = 0; j < p->dim; j++)
+            col_seen[l1l2_col_q(p, t, j)]++;
+        for (int r = 0; r < p->rows; r++)
+            row_seen[l1l2_row_crop(p, t, r)]++;
+    }
+    for (int order = 1; order <= 3; order++)
+        for (int i = 0; i < l1l2_terms(order, p->count, p->history); i++)
+            for (int j = 0; j < p->dim; j++) {
+                col_seen[l1l2_col_slack(p, order, i, j)]++;
+                row_seen[l1l2_row_term(p, order, i, j, 0)]++;
+                row_seen[l1l2_row_term(p, order, i, j, 1)]++;
+            }
+    for (int i = 0; i < cols; i++)
+        ck_assert_int_eq(col_seen[i], 1);
+    for (int i = 0; i < rows; i++)
+        ck_assert_int_eq(row_seen[i], 1);
+    free(col_seen);
+    free(row_seen);
 }
 
 START_TEST(columns_and_rows_are_bijections)
 {
-    for (int count = 1; count <= 9; count++)
-        for (int history = 0; history <= 3; history++) {
-            const int cols = l1l2_cols(count, history), rows = l1l2_rows(count, history);
-            int *col_seen = calloc((size_t)cols, sizeof *col_seen), *row_seen = calloc((size_t)rows, sizeof *row_seen);
-            for (int t = 0; t < count; t++) {
-                for (int j = 0; j < L1L2_DIM; j++)
-                    col_seen[l1l2_col_q(t, j)]++;
-                for (int r = 0; r < L1L2_CROP_ROWS; r++)
-                    row_seen[l1l2_row_crop(count, history, t, r)]++;
-            }
-            for (int order = 1; order <= 3; order++)
-                for (int i = 0; i < l1l2_terms(order, count, history); i++)
-                    for (int j = 0; j < L1L2_DIM; j++) {
-                        col_seen[l1l2_col_slack(count, history, order, i, j)]++;
-                        row_seen[l1l2_row_term(count, history, order, i, j, 0)]++;
-                        row_seen[l1l2_row_term(count, history, order, i, j, 1)]++;
-                    }
-            for (int i = 0; i < cols; i++)
-                ck_assert_int_eq(col_seen[i], 1);
-            for (int i = 0; i < rows; i++)
-                ck_assert_int_eq(row_seen[i], 1);
-            free(col_seen);
-            free(row_seen);
-        }
+    for (int dim = 2; dim <= 6; dim += 2)
+        for (int count = 1; count <= 9; count++)
+            for (int history = 0; history <= 3; history++)
+                check_bijections(&(L1L2PathProblem){
+                    .dim = dim, .rows = l1l2_crop_row_count(dim), .count = count, .history = history});
 }
 END_TEST
 
@@ -74,21 +82,21 @@ END_TEST
 
 START_TEST(columns_are_sorted_and_within_their_room)
 {
-    for (int count = 1; count <= 12; count++)
-        for (int history = 0; history <= 3; history++) {
-            L1L2PathProblem *p = random_window(count, history, 0.5, 3);
-            L1L2Qp *qp = l1l2_path_qp_create(count);
-            l1l2_path_qp_fill(p, qp);
-            ck_assert_int_le(qp->entries, qp->max_entries);
-            for (int c = 0; c < qp->cols; c++)
-                for (int k = qp->start[c]; k < qp->start[c + 1]; k++) {
-                    ck_assert_int_lt(qp->row[k], qp->rows);
-                    if (k > qp->start[c])
-                        ck_assert_int_lt(qp->row[k - 1], qp->row[k]);
-                }
-            l1l2_qp_free(qp);
-            l1l2_path_problem_free(p);
-        }
+    for (int round = 0; round < 144; round++) {
+        const int dim = 2 + 2 * (round % 3), count = 1 + round / 12, history = round / 3 % 4;
+        L1L2PathProblem *p = random_window(dim, count, history, 0.5, 3);
+        L1L2Qp *qp = l1l2_path_qp_create(count, dim);
+        l1l2_path_qp_fill(p, qp);
+        ck_assert_int_le(qp->entries, qp->max_entries);
+        for (int c = 0; c < qp->cols; c++)
+            for (int k = qp->start[c]; k < qp->start[c + 1]; k++) {
+                ck_assert_int_lt(qp->row[k], qp->rows);
+                if (k > qp->start[c])
+                    ck_assert_int_lt(qp->row[k - 1], qp->row[k]);
+            }
+        l1l2_qp_free(qp);
+        l1l2_path_problem_free(p);
+    }
 }
 END_TEST
 
@@ -97,23 +105,23 @@ END_TEST
 START_TEST(the_program_says_what_the_problem_says)
 {
     L1L2Rng rng = l1l2_rng_seeded(11);
-    for (int round = 0; round < 40; round++) {
-        const int count = 1 + round % 10, history = round % 4;
-        L1L2PathProblem *p = random_window(count, history, 0.7, (uint64_t)round);
-        L1L2Qp *qp = l1l2_path_qp_create(count);
+    for (int round = 0; round < 120; round++) {
+        const int dim = 2 + 2 * (round % 3), count = 1 + round % 10, history = round % 4;
+        L1L2PathProblem *p = random_window(dim, count, history, 0.7, (uint64_t)round);
+        L1L2Qp *qp = l1l2_path_qp_create(count, dim);
         l1l2_path_qp_fill(p, qp);
-        double q[10][L1L2_DIM], slack[240], dual[240][2] = {{0}}, crop_dual[10][L1L2_CROP_ROWS] = {{0}};
+        double q[10][L1L2_DIM], slack[180], dual[180][2] = {{0}}, crop_dual[10][L1L2_CROP_ROWS] = {{0}};
         double constant = 0.0;
         for (int t = 0; t < count; t++)
-            for (int j = 0; j < L1L2_DIM; j++) {
+            for (int j = 0; j < dim; j++) {
                 q[t][j] = p->camera[t][j] + uniform(&rng, -0.05, 0.05);
                 constant += p->lambda[t] * p->camera[t][j] * p->camera[t][j];
             }
         const double(*cq)[L1L2_DIM] = (const double(*)[L1L2_DIM])q;
         for (int order = 1; order <= 3; order++)
             for (int i = 0; i < l1l2_terms(order, count, history); i++)
-                for (int j = 0; j < L1L2_DIM; j++)
-                    slack[l1l2_term_index(order, count, history, i, j)] = fabs(
+                for (int j = 0; j < dim; j++)
+                    slack[l1l2_term_index(p, order, i, j)] = fabs(
                         l1l2_path_difference(p, cq, order, i + l1l2_terms_first(order, history), j));
         double *z = calloc((size_t)qp->cols, sizeof *z), *y = calloc((size_t)qp->rows, sizeof *y);
         double *Az = calloc((size_t)qp->rows, sizeof *Az);
@@ -127,7 +135,7 @@ START_TEST(the_program_says_what_the_problem_says)
         }
         ck_assert_near(objective, l1l2_path_objective(p, cq), 1e-12);
         double crop_worst = -1.0;
-        const int first_crop = l1l2_row_crop(count, history, 0, 0);
+        const int first_crop = l1l2_row_crop(p, 0, 0);
         for (int r = 0; r < first_crop; r += 2) /* one side of each pair is active, none is broken */
             ck_assert_near(fmax(Az[r] - qp->upper[r], Az[r + 1] - qp->upper[r + 1]), 0.0, 1e-10);
         for (int r = first_crop; r < qp->rows; r++)

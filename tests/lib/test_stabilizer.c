@@ -225,14 +225,35 @@ START_TEST(given_motions_take_the_place_of_measured_ones)
         }
     }
     ck_assert_int_eq(pulled, 40);
-    const double skewed[9] = {1, 0.5, 0, 0, 1, 0, 0, 0, 1}, nothing[9] = {0};
-    l1l2stab_reset(s);
-    L1L2StabFrame bad = {.motion = skewed};
-    ck_assert_int_eq(l1l2stab_push(s, &bad), L1L2STAB_ERR_ARGUMENT);
-    bad.motion = nothing;
-    ck_assert_int_eq(l1l2stab_push(s, &bad), L1L2STAB_ERR_ARGUMENT);
     l1l2stab_free(&s);
     free_clip(clip);
+}
+END_TEST
+
+START_TEST(a_given_motion_has_to_be_an_invertible_map_of_the_model)
+{
+    static const double motions[5][9] = {{1, 0, 3, 0, 1, -2, 0, 0, 1},    {1.1, -0.2, 3, 0.2, 1.1, -2, 0, 0, 1},
+                                         {1, 0.5, 0, 0, 1, 0, 0, 0, 1},   {1, 0, 0, 0, 1, 0, 1e-9, 0, 1},
+                                         {0, 0, 0, 0, 0, 0, 0, 0, 1}};
+    for (int model = L1L2STAB_MOTION_MODEL_TRANSLATION; model <= L1L2STAB_MOTION_MODEL_AFFINE; model++) {
+        L1L2StabConfig cfg = small_config(16);
+        cfg.motion_model = (L1L2StabMotionModel)model;
+        L1L2Stab *s = create(&cfg);
+        L1L2StabInfo info;
+        for (int i = 0; i < 5; i++) { /* translation, similarity, affine map, homography, nothing */
+            const L1L2StabFrame in = {.motion = motions[i]};
+            ck_assert_int_eq(l1l2stab_push(s, &in), i <= model ? L1L2STAB_OK : L1L2STAB_ERR_ARGUMENT);
+        }
+        ck_assert_int_eq(l1l2stab_finish(s), L1L2STAB_OK);
+        for (int i = 0; i <= model; i++) { /* what is given comes back; a path's first frame has none */
+            const L1L2Mat given = mat_of(motions[i]), identity = l1l2_mat_identity();
+            ck_assert_int_eq(l1l2stab_pull(s, NULL, &info), L1L2STAB_OK);
+            const L1L2Mat F = mat_of(info.F);
+            ck_assert_near(l1l2_mat_corner_distance(&F, i == 0 ? &identity : &given, 80, 48), 0.0, 1e-12);
+        }
+        ck_assert_int_eq(l1l2stab_pull(s, NULL, &info), L1L2STAB_EOS);
+        l1l2stab_free(&s);
+    }
 }
 END_TEST
 
@@ -299,6 +320,7 @@ int main(void)
     tcase_add_test(tcase, a_discontinuity_starts_a_path_without_a_change_of_delay);
     tcase_add_test(tcase, given_motions_take_the_place_of_measured_ones);
     tcase_add_test(tcase, the_threads_are_those_asked_for_and_the_inner_loops_have_a_name);
+    tcase_add_test(tcase, a_given_motion_has_to_be_an_invertible_map_of_the_model);
     tcase_add_test(tcase, knobs_set_while_running_are_checked_and_used);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);

@@ -2,95 +2,136 @@
 """Independent solution of the window problem (Qu & Song 2013, eq. 4 to 7), from the paper and nothing else.
 
 Other variables than the library's (the update transforms B_t, eq. 6, instead of the paths P_t), another solver
-(Clarabel; HiGHS where lambda is 0) and general sparse matrices. Unit: the frame's diagonal; p = (a, b, x, y), the
-linear part at half weight in both norms. Needs numpy, scipy and clarabel; not needed to build or test the library.
+(Clarabel; HiGHS where lambda is 0) and general sparse matrices, for each of the motion models. Unit: the frame's
+diagonal; the linear part at half weight in both norms.
+Needs numpy, scipy and clarabel; not needed to build or test the library.
 """
 import numpy as np
 import scipy.optimize
 import scipy.sparse as sp
 
-WEIGHT = np.array([0.5, 0.5, 1.0, 1.0])
 DIFFERENCES = {1: [1, -1], 2: [1, -2, 1], 3: [1, -3, 3, -1]}
 
 
-def similarity(p):
-    a, b, x, y = p
-    return np.array([[a, -b, x], [b, a, y], [0, 0, 1.0]])
+class Similarity:
+    """p = (a, b, x, y): [a -b x; b a y]."""
+    dim = 4
+    terms = np.diag([0.5, 0.5, 1, 1])                    # what the norms are taken of, from p
+    proximity = [([1, 0, 0, 0], 0.9, 1.1), ([0, 1, 0, 0], -0.1, 0.1)]
+
+    @staticmethod
+    def matrix(p):
+        a, b, x, y = p
+        return np.array([[a, -b, x], [b, a, y], [0, 0, 1.0]])
+
+    @staticmethod
+    def parameters(m):
+        return np.array([m[0, 0], m[1, 0], m[0, 2], m[1, 2]])
 
 
-def parameters(m):
-    return np.array([m[0, 0], m[1, 0], m[0, 2], m[1, 2]])
+class Translation:
+    """p = (x, y)."""
+    dim = 2
+    terms = np.eye(2)
+    proximity = []
+
+    @staticmethod
+    def matrix(p):
+        return np.array([[1, 0, p[0]], [0, 1, p[1]], [0, 0, 1.0]])
+
+    @staticmethod
+    def parameters(m):
+        return np.array([m[0, 2], m[1, 2]])
 
 
-def left_multiplication(c):
-    """The 4x4 L with parameters(C B) = L parameters(B) + shift."""
-    a, b, x, y = parameters(c)
-    rotate = np.array([[a, -b], [b, a]])
-    return np.block([[rotate, np.zeros((2, 2))], [np.zeros((2, 2)), rotate]]), np.array([0, 0, x, y])
+class Affine:
+    """p = (a, b, c, d, x, y): [a b x; c d y]. The norms are taken of zoom, turn, stretch and skew, each halved."""
+    dim = 6
+    terms = np.array([[1, 0, 0, 1, 0, 0], [0, -1, 1, 0, 0, 0], [1, 0, 0, -1, 0, 0], [0, 1, 1, 0, 0, 0],
+                      [0, 0, 0, 0, 4, 0], [0, 0, 0, 0, 0, 4]]) / 4
+    proximity = [([1, 0, 0, 0, 0, 0], 0.9, 1.1), ([0, 0, 0, 1, 0, 0], 0.9, 1.1), ([0, 1, 0, 0, 0, 0], -0.1, 0.1),
+                 ([0, 0, 1, 0, 0, 0], -0.1, 0.1), ([0, 1, 1, 0, 0, 0], -0.05, 0.05), ([1, 0, 0, -1, 0, 0], -0.1, 0.1)]
+
+    @staticmethod
+    def matrix(p):
+        a, b, c, d, x, y = p
+        return np.array([[a, b, x], [c, d, y], [0, 0, 1.0]])
+
+    @staticmethod
+    def parameters(m):
+        return np.array([m[0, 0], m[0, 1], m[1, 0], m[1, 1], m[0, 2], m[1, 2]])
 
 
-def camera_path(motions):
+def left_multiplication(c, model):
+    """The L and shift with parameters(C B) = L parameters(B) + shift."""
+    shift = model.parameters(c @ model.matrix(np.zeros(model.dim)))
+    return np.column_stack([model.parameters(c @ model.matrix(e)) - shift for e in np.eye(model.dim)]), shift
+
+
+def camera_path(motions, model):
     """C_t relative to the window's first frame (eq. 1); motions[0] is not used."""
     path = [np.eye(3)]
     for f in motions[1:]:
-        path.append(path[-1] @ similarity(f))
+        path.append(path[-1] @ model.matrix(f))
     return path
 
 
-def assemble(motions, past, lam, crop, width, height):
-    """Rows of the problem in p = parameters of B_t: differences (d + D p), their count, L2 part, and G p <= h.
+def limits(crop, half_w, half_h, model):
+    """Rows g and bounds h, g p <= h on the parameters of one B: the corners inside, and the proximity."""
+    rows = []
+    for sx in (-1, 1):
+        for sy in (-1, 1):
+            corner = np.array([sx * crop * half_w, sy * crop * half_h, 1])
+            fixed = (model.matrix(np.zeros(model.dim)) @ corner)[:2]
+            moved = np.column_stack([(model.matrix(e) @ corner)[:2] - fixed for e in np.eye(model.dim)])
+            for g, at, half in zip(moved, fixed, (half_w, half_h)):
+                rows += [(g, half - at), (-g, half + at)]
+    for g, low, high in model.proximity:
+        rows += [(np.array(g, float), high), (-np.array(g, float), -low)]
+    return rows
+
+
+def assemble(motions, past, crop, width, height, model):
+    """Rows of the problem in p = parameters of B_t: differences (d + D p), L2 part (l + L p), and G p <= h.
     past: parameters of P of up to three frames before the window, newest last, in the window's reference."""
-    n, diagonal = len(motions), np.hypot(width, height)
-    path = camera_path(motions)
-    lifts = [left_multiplication(c) for c in path]
+    n, diagonal, dim = len(motions), np.hypot(width, height), model.dim
+    path = camera_path(motions, model)
+    lifts = [left_multiplication(c, model) for c in path]
 
     def smooth(t):
         """P_t as (matrix over all variables, constant)."""
         if t < 0:
-            return sp.csr_matrix((4, 4 * n)), np.asarray(past[t], float)
+            return sp.csr_matrix((dim, dim * n)), np.asarray(past[t], float)
         lift, shift = lifts[t]
-        block = sp.lil_matrix((4, 4 * n))
-        block[:, 4 * t:4 * t + 4] = lift
+        block = sp.lil_matrix((dim, dim * n))
+        block[:, dim * t:dim * t + dim] = lift
         return block.tocsr(), shift
 
+    terms = sp.csr_matrix(model.terms)
     rows, constants = [], []
     for order, signs in DIFFERENCES.items():
         for t in range(n):
             if t - order < -len(past):
                 continue
             parts = [smooth(t - m) for m in range(order + 1)]
-            rows.append(sp.diags(WEIGHT) @ sum(s * q[0] for s, q in zip(signs, parts)))
-            constants.append(WEIGHT * sum(s * q[1] for s, q in zip(signs, parts)))
-    D = sp.vstack(rows).tocsr() if rows else sp.csr_matrix((0, 4 * n))
+            rows.append(terms @ sum(s * q[0] for s, q in zip(signs, parts)))
+            constants.append(model.terms @ sum(s * q[1] for s, q in zip(signs, parts)))
+    D = sp.vstack(rows).tocsr() if rows else sp.csr_matrix((0, dim * n))
     d = np.concatenate(constants) if constants else np.zeros(0)
 
-    L = sp.vstack([sp.diags(WEIGHT) @ smooth(t)[0] for t in range(n)]).tocsr()
-    l = np.concatenate([WEIGHT * (smooth(t)[1] - parameters(path[t])) for t in range(n)])
+    L = sp.vstack([terms @ smooth(t)[0] for t in range(n)]).tocsr()
+    l = np.concatenate([model.terms @ (smooth(t)[1] - model.parameters(path[t])) for t in range(n)])
 
-    G, h = [], []
-    half_w, half_h = width / 2 / diagonal, height / 2 / diagonal
-    for t in range(n):
-        for sx in (-1, 1):
-            for sy in (-1, 1):
-                u, v = sx * crop * half_w, sy * crop * half_h
-                for row, bound in (([u, -v, 1, 0], half_w), ([v, u, 0, 1], half_h)):
-                    for sign in (-1, 1):
-                        G.append((t, sign * np.array(row)))
-                        h.append(bound)
-        G += [(t, np.array([1.0, 0, 0, 0])), (t, np.array([-1.0, 0, 0, 0]))]
-        h += [1.1, -0.9]
-        G += [(t, np.array([0, 1.0, 0, 0])), (t, np.array([0, -1.0, 0, 0]))]
-        h += [0.1, 0.1]
-    data = np.concatenate([row for _, row in G])
-    index = np.concatenate([4 * t + np.arange(4) for t, _ in G])
-    G = sp.csr_matrix((data, index, 4 * np.arange(len(G) + 1)), shape=(len(G), 4 * n))
-    return D, d, L, l, G, np.array(h), path
+    frame = limits(crop, width / 2 / diagonal, height / 2 / diagonal, model)
+    G = sp.block_diag([np.array([g for g, _ in frame])] * n).tocsr()
+    h = np.array([bound for _, bound in frame] * n)
+    return D, d, L, l, G, h, path
 
 
-def solve(motions, past, lam, crop, width, height):
-    """Objective, parameters of P_t (n x 4) in the window's reference."""
-    D, d, L, l, G, h, path = assemble(motions, past, lam, crop, width, height)
-    n, terms = 4 * len(motions), D.shape[0]
+def solve(motions, past, lam, crop, width, height, model=Similarity):
+    """Objective, parameters of P_t (n x dim) in the window's reference."""
+    D, d, L, l, G, h, path = assemble(motions, past, crop, width, height, model)
+    n, terms = model.dim * len(motions), D.shape[0]
     eye = sp.identity(terms)
     A = sp.vstack([sp.hstack([D, -eye]), sp.hstack([-D, -eye]), sp.hstack([G, sp.csr_matrix((G.shape[0], terms))])])
     b = np.concatenate([-d, d, h])
@@ -111,11 +152,16 @@ def solve(motions, past, lam, crop, width, height):
         settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-13
         settings.max_iter = 400
         H = sp.block_diag([2 * lam * (L.T @ L), sp.csc_matrix((terms, terms))]).tocsc()
-        result = clarabel.DefaultSolver(sp.triu(H).tocsc(), cost, A.tocsc(), b, [clarabel.NonnegativeConeT(len(b))],
-                                        settings).solve()
+        for refinements in (10, 50):
+            settings.iterative_refinement_max_iter = refinements
+            result = clarabel.DefaultSolver(sp.triu(H).tocsc(), cost, A.tocsc(), b, [clarabel.NonnegativeConeT(len(b))],
+                                            settings).solve()
+            if str(result.status) == 'Solved':
+                break
+            settings.iterative_refinement_reltol = settings.iterative_refinement_abstol = 1e-15
         assert str(result.status) in ('Solved', 'AlmostSolved', 'InsufficientProgress'), result.status
         z = np.array(result.x)
     p = z[:n]
     objective = np.abs(D @ p + d).sum() + lam * ((L @ p + l) ** 2).sum()
-    smooth = np.array([parameters(c @ similarity(q)) for c, q in zip(path, p.reshape(-1, 4))])
+    smooth = np.array([model.parameters(c @ model.matrix(q)) for c, q in zip(path, p.reshape(-1, model.dim))])
     return objective, smooth

@@ -227,9 +227,9 @@ typedef struct L1L2StabFrame {
      * return OK. Must not call back into the library. May be NULL. */
     void (*release)(void *opaque);
     unsigned flags;      /* push only: L1L2STAB_FRAME_* */
-    /* push only: the frame's F_t (frame t to frame t-1, pixels, origin at the centre, 3x3 row-major, an invertible
-     * similarity), where the caller knows it; it is read during the call. NULL: it is measured. With a motion, data may
-     * be NULL, and the frame can only be pulled with out = NULL. */
+    /* push only: the frame's F_t (frame t to frame t-1, pixels, origin at the centre, 3x3 row-major, an invertible map
+     * of motion_model), where the caller knows it; it is read during the call. NULL: it is measured. With a motion,
+     * data may be NULL, and the frame can only be pulled with out = NULL. */
     const double *motion;
 } L1L2StabFrame;
 

@@ -270,7 +270,7 @@ find_line (const GstL1L2StabMotionIn * in, GstClockTime time)
   if (in->lines->len == 0 || !GST_CLOCK_TIME_IS_VALID (time))
     return -1;
   if (in->fps_n)
-    tolerance = gst_util_uint64_scale (GST_SECOND, in->fps_d, 2 * in->fps_n);
+    tolerance = gst_util_uint64_scale (GST_SECOND / 2, in->fps_d, in->fps_n);
   line = find_nearest (in, time);
   return (GstClockTime) ABS (GST_CLOCK_DIFF (time, get_line (in, line)->time))
       <= tolerance ? line : -1;

@@ -112,7 +112,7 @@ class Client(unittest.TestCase):
         values = [message.get_double('lambda').value for message in run.messages]
         self.assertEqual(values, [0.5] * 20 + [3.0] * (FRAMES - 20))
 
-    def test_a_box_in_the_picture_is_mapped_back_also_after_a_scaler(self):
+    def test_a_box_in_the_picture_is_mapped_back_also_after_a_converter_and_a_scaler(self):
         def look(buffer):
             meta = buffer.get_custom_meta('GstL1L2StabMeta').get_structure()
             to_source, from_source = matrix(meta, 'to-source'), matrix(meta, 'from-source')
@@ -121,7 +121,8 @@ class Client(unittest.TestCase):
             return middle, corners, apply(from_source, *middle), meta.get_uint64('frame').value
 
         run = Run('crop-ratio=0.8', look,
-                  'videoscale ! video/x-raw,width=160,height=480 ! fakesink name=sink signal-handoffs=true')
+                  'queue ! videoconvert ! video/x-raw,format=RGB ! videoscale ! video/x-raw,width=160,height=480 ! '
+                  'fakesink name=sink signal-handoffs=true')
         self.assertEqual([seen[3] for seen in run.seen], list(range(FRAMES)))
         for middle, corners, back, _ in run.seen:
             self.assertAlmostEqual(back[0], 80, places=6)

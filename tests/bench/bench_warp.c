@@ -13,7 +13,7 @@
 #include "rng.h"
 #include "warp.h"
 
-enum { FRAMES = 40, PLANES_MAX = 3 };
+enum { FRAMES = 40 };
 
 typedef struct Picture {
     uint8_t *data[4];
@@ -26,20 +26,25 @@ static Picture make_picture(const L1L2FormatInfo *format, int width, int height)
     Picture p = {{NULL}, {0}, {0}};
     L1L2Rng rng = l1l2_rng_seeded(1);
     for (int i = 0; i < format->planes; i++) {
-        p.stride[i] = (ptrdiff_t)l1l2_plane_size(width, format->plane[i].log2_sub_x) * format->plane[i].components;
+        const int bytes = l1l2_format_bytes(format) * format->plane[i].components;
+        p.stride[i] = (ptrdiff_t)l1l2_plane_size(width, format->plane[i].log2_sub_x) * bytes;
         p.size[i] = (size_t)p.stride[i] * (size_t)l1l2_plane_size(height, format->plane[i].log2_sub_y);
         p.data[i] = malloc(p.size[i]);
         if (!p.data[i])
             exit(EXIT_FAILURE);
-        for (size_t k = 0; k < p.size[i]; k++)
-            p.data[i][k] = (uint8_t)l1l2_rng_next(&rng);
+        for (size_t k = 0; k < p.size[i]; k += 2) {
+            const uint32_t level = format->depth > 8 ? l1l2_rng_below(&rng, 1u << format->depth) << format->shift
+                                                     : l1l2_rng_below(&rng, 1u << 16);
+            p.data[i][k] = (uint8_t)level;
+            p.data[i][k + 1] = (uint8_t)(level >> 8);
+        }
     }
     return p;
 }
 
 static void free_picture(Picture *p)
 {
-    for (int i = 0; i < PLANES_MAX; i++)
+    for (int i = 0; i < L1L2_MAX_PLANES; i++)
         free(p->data[i]);
 }
 
@@ -123,5 +128,9 @@ int main(void)
     bench(L1L2STAB_FORMAT_NV12, 1280, 720);
     bench(L1L2STAB_FORMAT_BGR, 1280, 720);
     bench(L1L2STAB_FORMAT_BGRX, 1280, 720);
+    bench(L1L2STAB_FORMAT_YUY2, 1280, 720);
+    bench(L1L2STAB_FORMAT_I420_10LE, 1280, 720);
+    bench(L1L2STAB_FORMAT_P010_10LE, 1280, 720);
+    bench(L1L2STAB_FORMAT_GRAY16_LE, 1280, 720);
     return EXIT_SUCCESS;
 }

@@ -78,7 +78,6 @@ static const L1L2FormatInfo formats[] = {
     ROW(BGRA64_LE, "BGRA64_LE", 16, 0, BGR, 1, FULL(4)),
     ROW(ABGR64_LE, "ABGR64_LE", 16, 0, XBGR, 1, FULL(4)),
     ROW(AYUV64, "AYUV64", 16, 0, SECOND, 1, FULL(4)),
-    ROW(Y412_LE, "Y412_LE", 12, 4, SECOND, 1, FULL(4)),
 };
 
 /* Components of two bytes are read and written as the processor's own 16-bit numbers. */

@@ -4,7 +4,7 @@
 #include "checkx.h"
 #include "format.h"
 
-enum { FIRST = L1L2STAB_FORMAT_GRAY8, LAST = L1L2STAB_FORMAT_Y412_LE };
+enum { FIRST = L1L2STAB_FORMAT_GRAY8, LAST = L1L2STAB_FORMAT_AYUV64 };
 
 START_TEST(every_format_of_the_public_header_is_described)
 {
@@ -59,7 +59,7 @@ START_TEST(planes_of_a_frame_have_the_right_number_of_bytes)
         {L1L2STAB_FORMAT_YUY2, {64}},           {L1L2STAB_FORMAT_GRAY16_LE, {64}},
         {L1L2STAB_FORMAT_I420_10LE, {64, 16, 16}}, {L1L2STAB_FORMAT_I422_12LE, {64, 32, 32}},
         {L1L2STAB_FORMAT_P010_10LE, {64, 32}},  {L1L2STAB_FORMAT_A420_10LE, {64, 16, 16, 64}},
-        {L1L2STAB_FORMAT_ARGB64_LE, {256}},     {L1L2STAB_FORMAT_Y412_LE, {256}},
+        {L1L2STAB_FORMAT_ARGB64_LE, {256}},     {L1L2STAB_FORMAT_AYUV64, {256}},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         const L1L2FormatInfo *info = l1l2_format_info(cases[k].format);
@@ -99,7 +99,7 @@ static double grey_weight(L1L2StabFormat format, int component)
 START_TEST(grey_is_made_of_the_right_components)
 {
     static const L1L2StabFormat luma_first[] = {L1L2STAB_FORMAT_NV21, L1L2STAB_FORMAT_P010_10LE, L1L2STAB_FORMAT_YUY2};
-    static const L1L2StabFormat luma_second[] = {L1L2STAB_FORMAT_UYVY, L1L2STAB_FORMAT_AYUV, L1L2STAB_FORMAT_Y412_LE};
+    static const L1L2StabFormat luma_second[] = {L1L2STAB_FORMAT_UYVY, L1L2STAB_FORMAT_AYUV, L1L2STAB_FORMAT_AYUV64};
     static const L1L2StabFormat blue_first[] = {L1L2STAB_FORMAT_BGRX, L1L2STAB_FORMAT_BGRA, L1L2STAB_FORMAT_BGR};
     static const L1L2StabFormat red_first[] = {L1L2STAB_FORMAT_RGBX, L1L2STAB_FORMAT_RGBA, L1L2STAB_FORMAT_RGB};
     static const L1L2StabFormat x_then_red[] = {L1L2STAB_FORMAT_XRGB, L1L2STAB_FORMAT_ARGB, L1L2STAB_FORMAT_ARGB64_LE};

@@ -13,7 +13,7 @@
 enum { GUARD = 37, GUARD_BYTE = 0xA5 }; /* guard bytes at each side of every row; GUARD rows above and below */
 
 /* Packed 4:2:2 is planes taken apart: tests of the planes leave it to test_warp_packed.c. */
-enum { FIRST_FORMAT = L1L2STAB_FORMAT_GRAY8, END_FORMAT = L1L2STAB_FORMAT_Y412_LE + 1 };
+enum { FIRST_FORMAT = L1L2STAB_FORMAT_GRAY8, END_FORMAT = L1L2STAB_FORMAT_AYUV64 + 1 };
 
 static inline bool is_packed(int format)
 {

@@ -61,8 +61,8 @@ component_level (const GstVideoFormatInfo * format, guint c, guint8 level)
 }
 
 /* 1.22 has the second chroma of P010 at byte 1 instead of 2. */
-static guint8 *
-component_at (const GstVideoFrame * frame, guint c, gint x, gint y)
+guint8 *
+stab_frame_component (const GstVideoFrame * frame, guint c, gint x, gint y)
 {
   guint8 *plane = GST_VIDEO_FRAME_PLANE_DATA (frame,
       GST_VIDEO_FRAME_COMP_PLANE (frame, c));
@@ -97,7 +97,7 @@ stab_frame_new (GstHarness * h, guint index)
 
     for (y = 0; deep && y < GST_VIDEO_FRAME_COMP_HEIGHT (&frame, c); y++) {
       for (x = 0; x < GST_VIDEO_FRAME_COMP_WIDTH (&frame, c); x++)
-        GST_WRITE_UINT16_LE (component_at (&frame, c, x, y), level);
+        GST_WRITE_UINT16_LE (stab_frame_component (&frame, c, x, y), level);
     }
   }
   gst_video_frame_unmap (&frame);
@@ -122,7 +122,7 @@ stab_frame_assert_level (GstBuffer * buffer, GstCaps * caps, guint8 level)
 
     for (y = 0; y < GST_VIDEO_FRAME_COMP_HEIGHT (&frame, c); y++) {
       for (x = 0; x < GST_VIDEO_FRAME_COMP_WIDTH (&frame, c); x++) {
-        const guint8 *at = component_at (&frame, c, x, y);
+        const guint8 *at = stab_frame_component (&frame, c, x, y);
         const guint got = deep ? GST_READ_UINT16_LE (at) : at[0];
 
         if (got != expected)

@@ -30,6 +30,10 @@ GstMessage *stab_harness_message (GstHarness * h, GstMessageType type);
 GstBuffer *stab_frame_new (GstHarness * h, guint index);
 guint8 stab_frame_level (guint index);
 
+/* Where component `c` of pixel (x, y), counted in that component's samples, is: one or two bytes. */
+guint8 *stab_frame_component (const GstVideoFrame * frame, guint c, gint x,
+    gint y);
+
 /* Fails unless every pixel of `buffer`, of these caps, has that level. */
 void stab_frame_assert_level (GstBuffer * buffer, GstCaps * caps, guint8 level);
 

@@ -8,7 +8,7 @@ static const gchar *formats[] = {
   "I420", "NV12", "YV12", "NV21", "I420_10LE", "P010_10LE", "I420_12LE",
   "P012_LE", "P016_LE", "Y42B", "NV16", "NV61", "YUY2", "UYVY", "YVYU", "VYUY",
   "I422_10LE", "I422_12LE", "Y444", "NV24", "AYUV", "VUYA", "Y444_10LE",
-  "Y444_12LE", "Y444_16LE", "Y412_LE", "Y41B", "A420", "AV12", "A420_10LE",
+  "Y444_12LE", "Y444_16LE", "Y41B", "A420", "AV12", "A420_10LE",
   "A422_10LE", "A444_10LE", "BGRx", "RGBx", "xRGB", "xBGR", "BGRA", "RGBA",
   "ARGB", "ABGR", "BGR", "RGB", "GBR", "GBRA", "GBR_10LE", "GBR_12LE",
   "GBRA_10LE", "GBRA_12LE", "BGRA64_LE", "RGBA64_LE", "ARGB64_LE", "ABGR64_LE",

@@ -133,8 +133,7 @@ typedef enum L1L2StabFormat {
     L1L2STAB_FORMAT_RGBA64_LE = 51,
     L1L2STAB_FORMAT_BGRA64_LE = 52,
     L1L2STAB_FORMAT_ABGR64_LE = 53,
-    L1L2STAB_FORMAT_AYUV64 = 54,
-    L1L2STAB_FORMAT_Y412_LE = 55 /* U Y V A, 12 bits in the upper ones of 16 */
+    L1L2STAB_FORMAT_AYUV64 = 54
 } L1L2StabFormat;
 
 /* Where a chroma sample lies within the luma samples that share it. Only subsampled directions look at it. */

@@ -151,7 +151,7 @@ typedef enum L1L2StabJoin {
 
 /* What F_t may be, and with it the camera path. */
 typedef enum L1L2StabMotionModel {
-    L1L2STAB_MOTION_MODEL_TRANSLATION = 0, /* 2 parameters: the picture is moved, never turned */
+    L1L2STAB_MOTION_MODEL_TRANSLATION = 0, /* 2 parameters: the picture is moved, never turned or zoomed */
     L1L2STAB_MOTION_MODEL_SIMILARITY = 1,  /* 4: move, turn, zoom */
     L1L2STAB_MOTION_MODEL_AFFINE = 2       /* 6: also shear and zoom along one axis */
 } L1L2StabMotionModel;

@@ -41,7 +41,7 @@ QUOTED = {
 
 # What a header outside this tree is called, and who alone may include it.
 FOREIGN = [
-    (r'opencv', r'lib/src/vision_opencv\.cpp|tests/clients/opencv_.*'),
+    (r'opencv', r'lib/src/vision_opencv\.cpp|tests/bench/bench_opencv_.*|tests/clients/opencv_.*'),
     (r'(osqp|qdldl|amd)\b', r'lib/src/qp_osqp\.c'),
     (r'(gst|glib|gio|gobject|gmodule)\b', r'(plugin|tests/plugin|samples)/.*'),
     (r'check\.h', r'tests/.*'),

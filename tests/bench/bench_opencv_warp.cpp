@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Informational: our warp beside OpenCV's warpAffine (three planes) and a memcpy, on the same 1080p I420 frames and one
- * core, in ms a frame: medians of many frames, taken in turns, so that all meet the same machine. A set of frames larger
- * than the caches goes round, as in a stabilizer.
+ * Informational: our warp beside OpenCV's warpAffine (three planes) and a memcpy, on the same 1080p I420 frames and
+ * one core, in ms a frame: medians of many frames, taken in turns, so that all meet the same machine. A set of frames
+ * larger than the caches goes round, as in a stabilizer.
  */
 #include <algorithm>
 #include <cmath>

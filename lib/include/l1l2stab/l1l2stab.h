@@ -311,8 +311,8 @@ L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_create(L1L2Stab **out, 
 /* Hand over the next frame. Its motion is measured, with `threads` > 1 beside the caller: tracking of this frame and
  * rendering of the one that is pulled next overlap.
  * OK: the library reads in->data until it calls in->release. AGAIN: `window` frames are held, pull first.
- * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. The error may be that
- * of the frame before, whose motion was not to be had: the next call tells it, once, and that frame starts a path. */
+ * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. The error may be
+ * that of the frame before, whose motion was not to be had: the next call tells it, once; that frame starts a path. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in);
 
 /* lambda and crop_ratio of the frames that are pushed from now on; ranges as in the config. The crop moves

@@ -113,6 +113,7 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
     const L1L2PathConfig path_cfg = {
         .width = WIDTH, .height = HEIGHT, .lambda = 0.5, .frame_rate = scene->fps, .crop_ratio = crop_ratio,
         .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
+        .model = L1L2STAB_MOTION_MODEL_SIMILARITY,
     };
     const L1L2WobbleConfig wobble_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW};
     L1L2Motion *motion = NULL;

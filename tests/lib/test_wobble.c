@@ -193,7 +193,7 @@ static L1L2Residual random_residual(L1L2Rng *rng, double size)
 /* A B_t that a path may have: anything, pulled in until the crop window is inside. */
 static L1L2Mat random_map(L1L2Rng *rng, double ratio)
 {
-    const L1L2Crop crop = l1l2_crop_make(WIDTH, HEIGHT, ratio, L1L2STAB_MOTION_MODEL_SIMILARITY);
+    const L1L2Crop crop = l1l2_crop_make(WIDTH, HEIGHT, ratio, 4);
     const L1L2Mat wild = l1l2_mat_similarity(uniform(rng, 0.9, 1.1), uniform(rng, -0.1, 0.1), uniform(rng, -0.3, 0.3),
                                              uniform(rng, -0.3, 0.3));
     const L1L2Mat B = l1l2_crop_admit(&crop, &wild);

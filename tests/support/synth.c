@@ -99,7 +99,8 @@ int synth_shot(const Synth *s, int t)
 double synth_contrast(const Synth *s, int t)
 {
     const SynthMoment m = synth_timeline_at(&s->cfg, t);
-    return m.mix > 0.0 ? 0.0 : fmin(m.gain, 1.0) * (1.0 - m.white) * (1.0 - m.black) * (1.0 - m.cover);
+    const double open = 1.0 - m.cover; /* less of the area, and that is all on one side */
+    return m.mix > 0.0 ? 0.0 : fmin(m.gain, 1.0) * (1.0 - m.white) * (1.0 - m.black) * open * open;
 }
 
 /* A dissolve shows two scenes. */

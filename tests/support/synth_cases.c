@@ -2,6 +2,8 @@
 #include "synth_cases.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* The hand moves by so much a frame, rms, for each unit of its shake's rms; at most 2.6 times that. */
 #define A_FRAME (1.0 / 0.46)
@@ -83,6 +85,14 @@ const SynthCase synth_cases[] = {
 };
 
 const int synth_case_count = sizeof synth_cases / sizeof *synth_cases;
+
+const SynthCase *synth_case_named(const char *name)
+{
+    for (int i = 0; i < synth_case_count; i++)
+        if (strcmp(synth_cases[i].name, name) == 0)
+            return &synth_cases[i];
+    abort();
+}
 
 SynthConfig synth_case_at(const SynthCase *c, int width)
 {

@@ -24,6 +24,9 @@ typedef struct SynthCase {
 extern const SynthCase synth_cases[];
 extern const int synth_case_count;
 
+/* Aborts where there is none. */
+const SynthCase *synth_case_named(const char *name);
+
 /* The clip's config at another size of the same proportions: all that is measured in pixels goes with it. */
 SynthConfig synth_case_at(const SynthCase *c, int width);
 

@@ -46,16 +46,16 @@ SynthAxis synth_axis_y(const SynthLayout *layout, int plane, L1L2StabChromaSite 
 void synth_store(const SynthLayout *layout, int plane, int which, const SynthSpan *span, const uint16_t *code,
                  uint8_t *row)
 {
-    const int components = layout->second[plane] < 0 ? 1 : 2;
+    const int components = layout->second[plane] < 0 ? 1 : 2, at = components * span->i + which;
+    if (layout->depth == 8) {
+        for (int i = 0; i < span->count; i++)
+            row[at + components * i] = (uint8_t)code[i];
+        return;
+    }
     for (int i = 0; i < span->count; i++) {
-        const int at = components * (span->i + i) + which;
-        if (layout->depth == 8) {
-            row[at] = (uint8_t)code[i];
-        } else {
-            const unsigned word = (unsigned)code[i] << layout->shift;
-            row[2 * at] = (uint8_t)(word & 255u);
-            row[2 * at + 1] = (uint8_t)(word >> 8);
-        }
+        const unsigned word = (unsigned)code[i] << layout->shift;
+        row[2 * (at + components * i)] = (uint8_t)(word & 255u);
+        row[2 * (at + components * i) + 1] = (uint8_t)(word >> 8);
     }
 }
 

@@ -15,13 +15,17 @@ void synth_sensor_init(SynthSensor *sensor, const SynthConfig *cfg)
     *sensor = (SynthSensor){.coding = cfg->coding};
     if (cfg->noise <= 0.0)
         return;
-    sensor->coarse = synth_alloc(NOISE_SIZE, sizeof *sensor->coarse);
-    sensor->fine = synth_alloc(NOISE_SIZE, sizeof *sensor->fine);
+    sensor->coarse = synth_alloc(NOISE_SIZE + SYNTH_SPAN, sizeof *sensor->coarse);
+    sensor->fine = synth_alloc(NOISE_SIZE + SYNTH_SPAN, sizeof *sensor->fine);
     for (uint64_t i = 0; i < NOISE_SIZE; i++) { /* Box and Muller */
         const double radius = sqrt(-2.0 * log(1.0 - synth_fraction(cfg->seed + 2 * i)));
         const double v = cfg->noise * radius * cos(6.283185307179586 * synth_fraction(cfg->seed + 2 * i + 1));
         sensor->coarse[i] = (int8_t)lrint(fmin(fmax(v, -127.0), 127.0));
         sensor->fine[i] = (int16_t)lrint(256.0 * fmin(fmax(v, -127.0), 127.0));
+    }
+    for (int i = 0; i < SYNTH_SPAN; i++) { /* so that a span's noise lies in one piece wherever it starts */
+        sensor->coarse[NOISE_SIZE + i] = sensor->coarse[i];
+        sensor->fine[NOISE_SIZE + i] = sensor->fine[i];
     }
 }
 
@@ -63,26 +67,42 @@ void synth_sensor_expose(const SynthMoment *m, int width, const SynthSpan *span,
 }
 
 /* As a coder does that sends each block anew: all levels in steps, and the steps elsewhere each time. */
-static int code_level(const SynthSensor *sensor, int t, const SynthSpan *span, int i, double level, double scale)
+static void code_levels(const SynthSensor *sensor, int t, int depth, const SynthSpan *span, int *level)
 {
-    const uint64_t key = ((uint64_t)t << 40) + ((uint64_t)(span->j / BLOCK) << 20) + (uint64_t)((span->i + i) / BLOCK);
-    const double step = sensor->coding * scale;
-    const double offset = step * synth_fraction(synth_hash(key) + (uint64_t)span->component);
-    return (int)lrint(floor((level + offset) / step + 0.5) * step - offset);
+    const double step = sensor->coding * (1 << (depth - 8));
+    const uint64_t row = ((uint64_t)t << 40) + ((uint64_t)(span->j / BLOCK) << 20);
+    for (int i = 0; i < span->count; i++) {
+        const uint64_t key = synth_hash(row + (uint64_t)((span->i + i) / BLOCK)) + (uint64_t)span->component;
+        const double offset = step * synth_fraction(key);
+        level[i] = (int)lrint(floor((level[i] + offset) / step + 0.5) * step - offset);
+    }
+}
+
+static void add_noise(const SynthSensor *sensor, int grain, int depth, const SynthSpan *span, int *level)
+{
+    const uint64_t start = synth_hash(((uint64_t)grain << 20) + (uint64_t)span->j) + (uint64_t)span->i;
+    const int8_t *coarse = sensor->coarse + start % NOISE_SIZE;
+    const int16_t *fine = sensor->fine + start % NOISE_SIZE;
+    const int scale = 1 << (depth - 8);
+    if (depth == 8)
+        for (int i = 0; i < span->count; i++)
+            level[i] += coarse[i];
+    else
+        for (int i = 0; i < span->count; i++)
+            level[i] += (fine[i] * scale + 128) >> 8;
 }
 
 void synth_sensor_read(const SynthSensor *sensor, int t, int grain, int depth, const SynthSpan *span,
                        const uint16_t *deep, uint16_t *code)
 {
-    const int full = (256 << (depth - 8)) - 1, shift = 14 - depth, scale = 1 << (depth - 8);
-    const uint64_t start = synth_hash(((uint64_t)grain << 20) + (uint64_t)span->j) + (uint64_t)span->i;
-    for (int i = 0; i < span->count; i++) {
-        int level = shift > 0 ? (deep[i] + (1 << shift >> 1)) >> shift : deep[i] << -shift;
-        const uint64_t at = (start + (uint64_t)i) % NOISE_SIZE;
-        if (span->component == 0 && sensor->coarse)
-            level += depth == 8 ? sensor->coarse[at] : (sensor->fine[at] * scale + 128) >> 8;
-        if (sensor->coding > 0.0)
-            level = code_level(sensor, t, span, i, level, scale);
-        code[i] = (uint16_t)(level < 0 ? 0 : level > full ? full : level);
-    }
+    const int full = (256 << (depth - 8)) - 1, down = depth < 14 ? 14 - depth : 0, up = depth > 14 ? depth - 14 : 0;
+    int level[SYNTH_SPAN];
+    for (int i = 0; i < span->count; i++)
+        level[i] = (deep[i] + (1 << down >> 1)) >> down << up;
+    if (span->component == 0 && sensor->coarse)
+        add_noise(sensor, grain, depth, span, level);
+    if (sensor->coding > 0.0)
+        code_levels(sensor, t, depth, span, level);
+    for (int i = 0; i < span->count; i++)
+        code[i] = (uint16_t)(level[i] < 0 ? 0 : level[i] > full ? full : level[i]);
 }

@@ -7,8 +7,8 @@
 
 #include "synth_scene.h"
 
-/* Of the scene: below it, one cannot see what the picture does. */
-static const double min_contrast = 0.02;
+/* Below it, under some noise, one cannot see what the picture does. */
+static const double min_contrast = 0.05;
 
 static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
@@ -97,11 +97,10 @@ static void judge_motion(SynthTrial *trial, const SynthConfig *cfg, const Synth 
         const L1L2StabInfo *info = &trial->info[t];
         double F[9];
         synth_motion(synth, t, F);
-        const int shot = synth_shot(synth, t);
-        trial->shot[t] = synth_contrast(synth, t) < min_contrast ? -1 : shot;
+        trial->contrast[t] = synth_contrast(synth, t);
         for (int i = 0; i < L1L2STAB_STAGE_COUNT; i++)
             trial->stage_ms[i] += 1e-6 * (double)info->stage_ns[i] / trial->frames;
-        if (t == 0 || shot != synth_shot(synth, t - 1)) {
+        if (t == 0 || synth_shot(synth, t) != synth_shot(synth, t - 1)) {
             memcpy(measured, identity, sizeof measured);
             memcpy(truth, identity, sizeof truth);
         } else {
@@ -130,13 +129,14 @@ static void judge_motion(SynthTrial *trial, const SynthConfig *cfg, const Synth 
 static void judge_path(SynthTrial *trial, const SynthConfig *cfg, const Synth *synth)
 {
     double in[3][9], out[3][9], sum_in = 0.0, sum_out = 0.0;
-    int count = 0;
+    int count = 0, seen = 0; /* frames of one shot in a row */
     for (int t = 0; t < trial->frames; t++) {
         double *M = in[t % 3];
         synth_camera(synth, t, M);
         multiply(M, trial->info[t].B, out[t % 3]);
-        const int *shot = trial->shot + t;
-        if (t < 2 || shot[0] < 0 || shot[0] != shot[-1] || shot[0] != shot[-2])
+        const bool cut = t > 0 && synth_shot(synth, t) != synth_shot(synth, t - 1);
+        seen = trial->contrast[t] < min_contrast ? 0 : cut ? 1 : seen + 1;
+        if (seen < 3)
             continue;
         sum_in += acceleration(cfg, in[(t - 2) % 3], in[(t - 1) % 3], M);
         sum_out += acceleration(cfg, out[(t - 2) % 3], out[(t - 1) % 3], out[t % 3]);
@@ -152,7 +152,7 @@ SynthTrial synth_trial_new(const SynthConfig *cfg, int frames)
     trial.info = synth_alloc((size_t)frames + 1, sizeof *trial.info);
     trial.error = synth_alloc((size_t)frames, sizeof *trial.error);
     trial.bias = synth_alloc((size_t)frames, sizeof *trial.bias);
-    trial.shot = synth_alloc((size_t)frames, sizeof *trial.shot);
+    trial.contrast = synth_alloc((size_t)frames, sizeof *trial.contrast);
     Synth *synth = synth_new(cfg);
     L1L2Stab *stab = stabilizer_new(cfg);
     int got = 0;
@@ -176,6 +176,6 @@ void synth_trial_free(SynthTrial *trial)
     free(trial->info);
     free(trial->error);
     free(trial->bias);
-    free(trial->shot);
+    free(trial->contrast);
     *trial = (SynthTrial){0};
 }

@@ -10,14 +10,15 @@ typedef struct SynthTrial {
     L1L2StabInfo *info;  /* of each frame */
     double *error;       /* of each F_t, px: rms over the frame's corners; 0 for a path's first frame */
     double *bias;        /* how far off the path is, px: at the corners, since the shot began */
-    int *shot;           /* that each frame shows; -1 where there is nothing to be seen, or two shots */
+    double *contrast;    /* what is left of one scene's, [0, 1] */
     double rms, worst;   /* of `error`, over the frames whose motion was measured */
     double drift;        /* `bias` at the end */
     double quality;      /* lowest of those frames */
     int lost;            /* frames whose motion was not measured */
     int starts;          /* paths that start after the first frame */
     double jitter_in, jitter_out; /* rms acceleration of the true camera, and of where the crop windows truly look, px:
-                                   * over the frame's corners, within shots, where there is something to be seen */
+                                   * over the frame's corners, within shots, where there is contrast enough to
+                                   * see what the picture does */
     double stage_ms[L1L2STAB_STAGE_COUNT]; /* a frame */
 } SynthTrial;
 

@@ -35,16 +35,20 @@ void synth_view_aim(SynthView *view, const SynthConfig *cfg, double frames, doub
     double length = blur;
     if (cfg->exposure > 0.0)
         length = fmax(length, smear(cfg, frames));
+    double x[SYNTH_VIEW_MAX_EYES], y[SYNTH_VIEW_MAX_EYES], mean_x = 0.0, mean_y = 0.0;
     view->parallax = cfg->parallax;
     view->eyes = (int)fmin(1.0 + ceil(length), SYNTH_VIEW_MAX_EYES);
+    for (int k = 0; k < view->eyes; k++) { /* the aperture's points lie on a spiral, equally dense */
+        const double radius = 0.5 * blur * sqrt((k + 0.5) / view->eyes), angle = 2.399963229728653 * k;
+        x[k] = radius * cos(angle), y[k] = radius * sin(angle);
+        mean_x += x[k] / view->eyes, mean_y += y[k] / view->eyes;
+    }
     for (int k = 0; k < view->eyes; k++) {
         SynthEye *eye = &view->eye[k];
-        const double part = (k + 0.5) / view->eyes; /* the aperture's points lie on a spiral, equally dense */
-        const double radius = 0.5 * blur * sqrt(part), angle = 2.399963229728653 * k;
-        const double time = frames + cfg->exposure * (part - 0.5);
+        const double time = frames + cfg->exposure * ((k + 0.5) / view->eyes - 0.5);
         synth_path_pose(cfg, time, eye->M);
-        eye->M[2] += radius * cos(angle);
-        eye->M[5] += radius * sin(angle);
+        eye->M[2] += x[k] - mean_x; /* out of focus, things stay in their place */
+        eye->M[5] += y[k] - mean_y;
         eye->movers = synth_movers_at(cfg, time, eye->M, eye->mover);
     }
 }

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/* The background's motion, not the subject's: things that move by themselves on a large part of the frame. */
+#include "checkx.h"
+#include "synth_cases.h"
+#include "synth_trial.h"
+
+static const char *const fifths[] = {"mover on 20 %", "mover on 40 %", "mover on 40 %, fast",
+                                     "mover on 40 %, in the frame", "mover on 40 %, tripod", "walkers on 25 %",
+                                     "walkers on 50 %"};
+
+START_TEST(the_background_is_followed_where_movers_cover_two_fifths)
+{
+    SynthTrial trial = synth_trial_new(&synth_case_named(fifths[_i])->cfg, 100);
+    ck_assert_msg(trial.rms < 0.3, "%s: %g px", fifths[_i], trial.rms);
+    ck_assert_int_eq(trial.lost + trial.starts, 0);
+    synth_trial_free(&trial);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("motion_movers");
+    TCase *tc = tcase_create("motion_movers");
+    tcase_set_timeout(tc, 60);
+    tcase_add_loop_test(tc, the_background_is_followed_where_movers_cover_two_fifths, 0,
+                        sizeof fifths / sizeof fifths[0]);
+    suite_add_tcase(suite, tc);
+    return checkx_run(suite);
+}

@@ -32,6 +32,7 @@ void l1l2stab_config_init(L1L2StabConfig *cfg, size_t struct_size)
         .logger = {.max_level = L1L2STAB_LOG_INFO},
         .weights = {1.0, 1.0, 1.0},
         .motion_model = L1L2STAB_MOTION_MODEL_SIMILARITY,
+        .rolling_shutter = L1L2STAB_ROLLING_SHUTTER_NONE,
     };
     if (!cfg || struct_size < sizeof cfg->struct_size)
         return;
@@ -95,6 +96,8 @@ static bool valid(const L1L2StabConfig *cfg)
            in_range(cfg, "solver", cfg->solver, L1L2STAB_SOLVER_AUTO, L1L2STAB_SOLVER_OSQP) &&
            in_range(cfg, "motion_model", cfg->motion_model, L1L2STAB_MOTION_MODEL_TRANSLATION,
                     L1L2STAB_MOTION_MODEL_AFFINE) &&
+           in_range(cfg, "rolling_shutter", cfg->rolling_shutter, L1L2STAB_ROLLING_SHUTTER_NONE,
+                    L1L2STAB_ROLLING_SHUTTER_MIXTURE) &&
            weights_fit(cfg) && overlap_fits(cfg);
 }
 

@@ -8,6 +8,7 @@
 #include "dissolve.h"
 #include "log.h"
 #include "mem.h"
+#include "motion_residual.h"
 #include "motion_ladder.h"
 #include "motion_overlay.h"
 #include "vision.h"
@@ -180,6 +181,37 @@ static void start_shot(L1L2Motion *m, L1L2MotionResult *out, const char *how)
     start_path(m);
 }
 
+/* Step 4, as far as it is about two frames. Points that agree with the residual are the camera's too. Where rows move
+ * so differently that no similarity is found, a wide one is good enough to begin with, if all comes together in the
+ * end. */
+static void fit_residual(L1L2Motion *m, L1L2Rung *rung, L1L2MotionResult *out)
+{
+    const double wide = 3.0, min_share = 0.7, most = 0.85, few = 0.7;
+    const L1L2ResidualShape shape = {m->cfg.rolling_shutter, m->voters.half_w, m->voters.half_h};
+    const int count = m->points;
+    const double threshold = m->ladder.threshold;
+    if (shape.model == L1L2STAB_ROLLING_SHUTTER_NONE || m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION)
+        return;
+    const bool found = rung->model >= L1L2STAB_MODEL_SIMILARITY;
+    L1L2Mat F = rung->F;
+    bool agrees[MAX_POINTS];
+    memcpy(agrees, m->inlier, sizeof agrees);
+    if (!found && l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, m->pair, (L1L2Say){m->votes, m->weights}, count,
+                              wide * threshold, &m->rng, agrees, &F) < min_share * count)
+        return;
+    const int inliers = l1l2_motion_residual_fit(&shape, m->pair, count, threshold, agrees, &F, &out->residual);
+    out->has_residual = inliers >= (found ? 1 : min_share * count);
+    if (!out->has_residual)
+        return;
+    memcpy(m->inlier, agrees, sizeof agrees);
+    if (!found || (inliers >= most * count && rung->inliers < few * inliers)) {
+        const L1L2Mat rest = l1l2_residual_split(&shape, &out->residual.r);
+        for (int i = 0; i < 6; i++)
+            F.m[i] += rest.m[i];
+        *rung = l1l2_ladder_accept(&m->ladder, &F, inliers, (double)inliers / count);
+    }
+}
+
 static void fit(L1L2Motion *m, L1L2MotionResult *out)
 {
     const int count = m->points;
@@ -187,6 +219,7 @@ static void fit(L1L2Motion *m, L1L2MotionResult *out)
     const L1L2Say say = {m->votes, m->weights};
     L1L2Rung rung = l1l2_ladder_measure(&m->ladder, &m->voters, m->pair, say, count, m->since_selection == 1, &m->rng,
                                         m->inlier);
+    fit_residual(m, &rung, out);
     const bool measured = rung.model != L1L2STAB_MODEL_NONE;
     /* Nothing could be measured: is it because another shot begins? A picture that shows nothing is none; what comes
      * after it is compared with the one before. */

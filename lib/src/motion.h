@@ -14,6 +14,7 @@
 
 #include "format.h"
 #include "geom.h"
+#include "residual.h"
 
 typedef struct L1L2Motion L1L2Motion;
 
@@ -24,6 +25,7 @@ typedef struct L1L2MotionConfig {
     L1L2StabMotionModel model; /* the highest that is fitted */
     uint64_t seed;
     const L1L2StabLogger *log;
+    L1L2StabRollingShutter rolling_shutter; /* how what F leaves is fitted; NONE: not at all */
 } L1L2MotionConfig;
 
 typedef struct L1L2MotionResult {
@@ -32,6 +34,8 @@ typedef struct L1L2MotionResult {
     L1L2StabModel model;
     int tracks, inliers;
     double quality;     /* [0, 1], as in L1L2StabInfo */
+    bool has_residual;  /* it was measured */
+    L1L2ResidualStep residual; /* of F */
     int64_t scale_ns, track_ns, fit_ns;
 } L1L2MotionResult;
 

@@ -206,6 +206,14 @@ L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *
     return r;
 }
 
+L1L2Rung l1l2_ladder_accept(L1L2Ladder *l, const L1L2Mat *F, int inliers, double quality)
+{
+    l->rung = L1L2STAB_MOTION_MODEL_SIMILARITY;
+    l->waiting = l->lost = 0;
+    l->last = *F;
+    return (L1L2Rung){.model = L1L2STAB_MODEL_SIMILARITY, .F = *F, .inliers = inliers, .quality = quality};
+}
+
 L1L2Rung l1l2_ladder_predict(L1L2Ladder *l)
 {
     l->lost++;

@@ -39,6 +39,9 @@ void l1l2_ladder_reset(L1L2Ladder *l);
 L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *pairs, L1L2Say say, int count,
                              bool selected, L1L2Rng *rng, bool *inlier);
 
+/* A similarity that was found otherwise. */
+L1L2Rung l1l2_ladder_accept(L1L2Ladder *l, const L1L2Mat *F, int inliers, double quality);
+
 /* The motion where nothing was measured: the one before it, fading, and then none. */
 L1L2Rung l1l2_ladder_predict(L1L2Ladder *l);
 

@@ -14,11 +14,11 @@ void l1l2_pool_free(L1L2Pool *pool);
 /* How many threads work, the caller's included. */
 int l1l2_pool_threads(const L1L2Pool *pool);
 
-/* Calls part(context, 0) ... part(context, parts - 1), each once, in any order and on any thread; returns when all are
- * done. One run at a time. pool NULL: on the caller's thread alone. */
+/* Calls part(context, 0) ... part(context, parts - 1), each once, in any order and on any thread; returns when all
+ * are done. One run at a time. pool NULL: on the caller's thread alone. */
 void l1l2_pool_run(L1L2Pool *pool, int parts, void (*part)(void *context, int index), void *context);
 
-/* Calls task(context) beside the caller, who goes on; a pool of one thread calls it at once. Runs share the pool's other
+/* Calls task(context) beside the caller, who goes on; a pool of one thread calls it at once. Runs share the other
  * threads, and this one when the task is done. One task at a time: join before the next. */
 void l1l2_pool_start(L1L2Pool *pool, void (*task)(void *context), void *context);
 

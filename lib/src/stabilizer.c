@@ -4,7 +4,7 @@
  *
  *   push    motion.c: steps 1 and 2a, F_t, beside the caller: analysis.c
  *           path.c: steps 2b and 3, C_t and B_t, once the motion is there: settle()
- *   pull    warp.c: step 5
+ *   pull    wobble.c: step 4, warp.c: step 5
  *
  * States: open -> finished (finish) -> open (reset). Frames wait in the ring from push to pull.
  */
@@ -22,6 +22,7 @@
 #include "path.h"
 #include "ring.h"
 #include "warp.h"
+#include "wobble.h"
 
 struct L1L2Stab {
     L1L2StabConfig cfg;
@@ -30,6 +31,7 @@ struct L1L2Stab {
     L1L2Pool *pool;
     L1L2Analysis *analysis;
     L1L2Path *path;
+    L1L2Wobble *wobble;
     L1L2Warp *warp;
     L1L2Ring ring;
     bool finished;
@@ -52,6 +54,7 @@ static L1L2StabResult build(L1L2Stab *s)
         .height = cfg->height,
         .analysis_size = cfg->analysis_size,
         .model = cfg->motion_model,
+        .rolling_shutter = cfg->rolling_shutter,
         .seed = cfg->seed,
         .log = &cfg->logger,
     };
@@ -79,6 +82,8 @@ static L1L2StabResult build(L1L2Stab *s)
         .interpolation = cfg->interpolation,
         .pool = s->pool,
     };
+    const L1L2WobbleConfig wobble = {cfg->rolling_shutter, cfg->width, cfg->height,
+                                     s->out_width, s->out_height, cfg->window};
     if (!s->pool || !l1l2_ring_init(&s->ring, cfg->window))
         return L1L2STAB_ERR_NOMEM;
     L1L2StabResult result = l1l2_analysis_create(&s->analysis, &motion, s->pool);
@@ -86,6 +91,8 @@ static L1L2StabResult build(L1L2Stab *s)
         result = l1l2_path_create(&s->path, &path);
     if (result == L1L2STAB_OK)
         result = l1l2_warp_create(&s->warp, &warp);
+    if (result == L1L2STAB_OK)
+        result = l1l2_wobble_create(&s->wobble, &wobble);
     return result;
 }
 
@@ -127,6 +134,7 @@ void l1l2stab_free(L1L2Stab **s)
     l1l2_analysis_free((*s)->analysis); /* it may be reading a frame */
     l1l2_ring_clear(&(*s)->ring);
     l1l2_path_free((*s)->path);
+    l1l2_wobble_free((*s)->wobble);
     l1l2_warp_free((*s)->warp);
     l1l2_pool_free((*s)->pool);
     l1l2_mem_free(*s);
@@ -140,6 +148,7 @@ void l1l2stab_reset(L1L2Stab *s)
     l1l2_analysis_reset(s->analysis);
     l1l2_ring_drop_all(&s->ring);
     l1l2_path_reset(s->path);
+    l1l2_wobble_reset(s->wobble);
     s->finished = s->decided = false;
     s->hurried = 0;
     s->pulled = 0;
@@ -171,6 +180,8 @@ static void extend_path(L1L2Stab *s, L1L2Held *held, const double *given_px)
     l1l2_path_set_lambda(s->path, held->lambda);
     l1l2_path_set_crop_ratio(s->path, held->crop_ratio);
     l1l2_path_push(s->path, &motion->F, motion->model == L1L2STAB_MODEL_NONE);
+    l1l2_wobble_push(s->wobble, &motion->F, motion->has_residual ? &motion->residual : NULL,
+                     motion->model == L1L2STAB_MODEL_NONE);
     l1l2_ring_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
 }
 
@@ -327,6 +338,7 @@ static L1L2StabResult fetch_path(L1L2Stab *s)
             return result;
         s->decided = l1l2_path_pull(s->path, &s->next);
     }
+    l1l2_wobble_pull(s->wobble);
     s->camera = s->next.path_index == 0 ? l1l2_mat_identity() : l1l2_mat_mul(s->camera, s->next.F);
     s->smooth = l1l2_mat_mul(s->camera, s->next.B);
     return L1L2STAB_OK;
@@ -349,9 +361,11 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
     const double bypass = l1l2_fade_next(&s->bypass, s->next.path_index == 0);
     const L1L2Mat map = l1l2_mat_mix(&stable, &untouched, bypass);
     const int64_t start_ns = l1l2_clock_ns();
+    double residual_px;
+    const L1L2WarpMap bent = {.affine = map, .mesh = l1l2_wobble_bend(s->wobble, &map, 1.0 - bypass, &residual_px)};
     if (out) {
-        l1l2_warp_render(s->warp, &(L1L2WarpMap){.affine = map}, (const uint8_t *const *)held->frame.data,
-                         held->frame.stride, out->data, out->stride);
+        l1l2_warp_render(s->warp, &bent, (const uint8_t *const *)held->frame.data, held->frame.stride, out->data,
+                         out->stride);
         out->pts = held->frame.pts;
         out->opaque = held->frame.opaque;
     }
@@ -362,6 +376,8 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
         l1l2_info_export(&s->smooth, s->diagonal_px, info->P);
         memcpy(info->warp, map.m, sizeof map.m);
         info->bypass = bypass;
+        info->residual = residual_px;
+        info->readout = l1l2_wobble_readout(s->wobble);
         info->stage_ns[L1L2STAB_STAGE_WARP] = out ? l1l2_clock_ns() - start_ns : 0;
     }
     s->decided = false;

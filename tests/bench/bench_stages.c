@@ -3,7 +3,7 @@
  * Where a frame's time goes, through the public interface: ms a frame by stage, for sizes from 480p to 2160p. A clip of
  * 24 synthetic frames is played back and forth, so that rendering it does not count.
  *
- * usage: bench_stages [FRAMES [THREADS]]     default: 600 frames, as many threads as cores
+ * usage: bench_stages [FRAMES [THREADS [HEIGHT]]]     default: 600 frames, as many threads as cores, all sizes
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -93,9 +93,11 @@ int main(int argc, char **argv)
 {
     static const int sizes[][2] = {{854, 480}, {1280, 720}, {1920, 1080}, {3840, 2160}};
     const int frames = argc > 1 ? atoi(argv[1]) : 600, threads = argc > 2 ? atoi(argv[2]) : 0;
+    const int height = argc > 3 ? atoi(argv[3]) : 0;
     printf("ms a frame, I420, defaults (window 150, bicubic), threads=%d\n", threads);
     printf("size        scale  track    fit  solve   warp      wall     cpu  frames/s\n");
     for (int i = 0; i < 4; i++)
-        bench(sizes[i][0], sizes[i][1], frames, threads);
+        if (height == 0 || height == sizes[i][1])
+            bench(sizes[i][0], sizes[i][1], frames, threads);
     return EXIT_SUCCESS;
 }

@@ -12,14 +12,15 @@ import sys
 from pathlib import Path
 
 PUBLIC = 'l1l2stab/l1l2stab.h'
-LEAF = {'clock', 'cut', 'dissolve', 'fade', 'format', 'geom', 'log', 'mem', 'pool', 'rng'}
+LEAF = {'clock', 'cut', 'dissolve', 'fade', 'format', 'geom', 'log', 'mem', 'pool', 'residual', 'rng'}
 
 # A group's modules, and the groups that it may include besides itself and the leaves. path_qp.c is of module path.
 GROUPS = {
-    'stabilizer': ({'stabilizer', 'analysis', 'config', 'frame', 'info', 'ring'}, {'motion', 'path', 'warp'}),
+    'stabilizer': ({'stabilizer', 'analysis', 'config', 'frame', 'info', 'ring'}, {'motion', 'path', 'warp', 'wobble'}),
     'motion': ({'motion', 'ransac'}, {'vision'}),
     'path': ({'path', 'plan', 'crop'}, {'qp'}),
     'warp': ({'warp'}, set()),
+    'wobble': ({'wobble'}, {'warp'}),
     'vision': ({'vision'}, set()),
     'qp': ({'qp'}, set()),
     'leaf': (LEAF, set()),
@@ -40,7 +41,7 @@ QUOTED = {
 
 # What a header outside this tree is called, and who alone may include it.
 FOREIGN = [
-    (r'opencv', r'lib/src/vision_opencv\.cpp|tests/clients/opencv_.*'),
+    (r'opencv', r'lib/src/vision_opencv\.cpp|tests/bench/bench_opencv_.*|tests/clients/opencv_.*'),
     (r'(osqp|qdldl|amd)\b', r'lib/src/qp_osqp\.c'),
     (r'(gst|glib|gio|gobject|gmodule)\b', r'(plugin|tests/plugin|samples)/.*'),
     (r'check\.h', r'tests/.*'),

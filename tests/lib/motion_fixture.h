@@ -29,7 +29,8 @@ typedef struct Run {
 static inline L1L2Motion *motion_new(int width, int height, L1L2StabFormat format)
 {
     const L1L2MotionConfig cfg = {
-        l1l2_format_info(format), width, height, 640, L1L2STAB_MOTION_MODEL_SIMILARITY, 1, &logger};
+        l1l2_format_info(format), width, height, 640, L1L2STAB_MOTION_MODEL_SIMILARITY, 1, &logger,
+        L1L2STAB_ROLLING_SHUTTER_NONE};
     L1L2Motion *m;
     ck_assert_int_eq(l1l2_motion_create(&m, &cfg), L1L2STAB_OK);
     return m;

@@ -230,6 +230,33 @@ START_TEST(given_motions_take_the_place_of_measured_ones)
 }
 END_TEST
 
+START_TEST(every_motion_model_runs_and_keeps_its_word)
+{
+    Clip *clip = new_clip(40, L1L2STAB_FORMAT_I420);
+    for (int model = L1L2STAB_MOTION_MODEL_TRANSLATION; model <= L1L2STAB_MOTION_MODEL_AFFINE; model++) {
+        L1L2StabConfig cfg = small_config(16);
+        cfg.motion_model = (L1L2StabMotionModel)model;
+        L1L2StabInfo info[40];
+        L1L2Stab *s = create(&cfg);
+        ck_assert_int_eq(stabilize(s, clip, info, NULL), 40);
+        for (int t = 0; t < 40; t++) {
+            const L1L2Mat F = mat_of(info[t].F), B = mat_of(info[t].B), warp = mat_of(info[t].warp);
+            const L1L2Mat F_model = l1l2_mat_reduce(&F, l1l2_mat_dim(cfg.motion_model));
+            const L1L2Mat B_model = l1l2_mat_reduce(&B, l1l2_mat_dim(cfg.motion_model));
+            ck_assert_near(l1l2_mat_corner_distance(&F, &F_model, 80, 48), 0.0, 1e-9);
+            ck_assert_near(l1l2_mat_corner_distance(&B, &B_model, 80, 48), 0.0, 1e-9);
+            for (int k = 0; k < 4; k++) {
+                const L1L2Point p = l1l2_mat_apply(&warp, (L1L2Point){k & 1 ? 80 : -80, k & 2 ? 48 : -48});
+                ck_assert(fabs(p.x) <= 80 + 1e-9 && fabs(p.y) <= 48 + 1e-9);
+            }
+        }
+        l1l2stab_free(&s);
+        memset(clip->released, 0, sizeof clip->released);
+    }
+    free_clip(clip);
+}
+END_TEST
+
 START_TEST(a_given_motion_has_to_be_an_invertible_map_of_the_model)
 {
     static const double motions[5][9] = {{1, 0, 3, 0, 1, -2, 0, 0, 1},    {1.1, -0.2, 3, 0.2, 1.1, -2, 0, 0, 1},
@@ -320,6 +347,7 @@ int main(void)
     tcase_add_test(tcase, a_discontinuity_starts_a_path_without_a_change_of_delay);
     tcase_add_test(tcase, given_motions_take_the_place_of_measured_ones);
     tcase_add_test(tcase, the_threads_are_those_asked_for_and_the_inner_loops_have_a_name);
+    tcase_add_test(tcase, every_motion_model_runs_and_keeps_its_word);
     tcase_add_test(tcase, a_given_motion_has_to_be_an_invertible_map_of_the_model);
     tcase_add_test(tcase, knobs_set_while_running_are_checked_and_used);
     suite_add_tcase(suite, tcase);

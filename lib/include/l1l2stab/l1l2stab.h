@@ -156,6 +156,13 @@ typedef enum L1L2StabMotionModel {
     L1L2STAB_MOTION_MODEL_AFFINE = 2       /* 6: also shear and zoom along one axis */
 } L1L2StabMotionModel;
 
+/* What is done about rolling shutters and wobble, the motion that a similarity leaves (paper, Algorithm 1, step 4). */
+typedef enum L1L2StabRollingShutter {
+    L1L2STAB_ROLLING_SHUTTER_NONE = 0,
+    L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY = 1, /* one homography a frame */
+    L1L2STAB_ROLLING_SHUTTER_MIXTURE = 2     /* a homography for each row, and the camera's own skew where it shows */
+} L1L2StabRollingShutter;
+
 typedef enum L1L2StabInterpolation {
     L1L2STAB_INTERPOLATION_BILINEAR = 0, /* 2x2 taps: fast, soft, its sharpness pulses */
     L1L2STAB_INTERPOLATION_BICUBIC = 1,  /* 4x4 taps, a = -0.75 */
@@ -212,6 +219,7 @@ typedef struct L1L2StabConfig {
     double weights[3];             /* of |DP|, |D2P|, |D3P|, (0, 1000]; default 1, 1, 1 (eq. 5); G2011 has 10, 1, 100 */
     L1L2StabSolver solver;         /* default AUTO */
     L1L2StabMotionModel motion_model; /* default SIMILARITY */
+    L1L2StabRollingShutter rolling_shutter; /* default NONE */
 } L1L2StabConfig;
 
 /* The path starts anew at this frame: nothing before it belongs to the same shot. */
@@ -282,7 +290,9 @@ typedef struct L1L2StabInfo {
     double solver_residual[2]; /* OSQP's primal and dual residual; 0 where it did not run */
     double quality;          /* of F, [0, 1]: 0 not measured, 1 all over the frame the points agree */
     double bypass;           /* of what was rendered, [0, 1]: 0 stabilized, 1 untouched */
-    uint8_t reserved[48];
+    double residual;         /* the longest way that a sample was moved against the rolling shutter, pixels */
+    double readout;          /* first row to last, frames, as far as it shows; < 0: from below; 0: none */
+    uint8_t reserved[32];
 } L1L2StabInfo;
 
 /* Fill *cfg with the defaults; pass sizeof *cfg, so that a program built against an older header goes on working. */
@@ -301,8 +311,8 @@ L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_create(L1L2Stab **out, 
 /* Hand over the next frame. Its motion is measured, with `threads` > 1 beside the caller: tracking of this frame and
  * rendering of the one that is pulled next overlap.
  * OK: the library reads in->data until it calls in->release. AGAIN: `window` frames are held, pull first.
- * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. An error may be that
- * of the frame before, whose motion was not to be had: it is told once, by the next call, and that frame starts a path. */
+ * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. The error may be
+ * that of the frame before, whose motion was not to be had: the next call tells it, once; that frame starts a path. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in);
 
 /* lambda and crop_ratio of the frames that are pushed from now on; ranges as in the config. The crop moves

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+#include "residual.h"
+
+#include <math.h>
+#include <string.h>
+
+int l1l2_residual_size(const L1L2ResidualShape *shape)
+{
+    return shape->model == L1L2STAB_ROLLING_SHUTTER_MIXTURE ? L1L2_RESIDUAL_SIZE : 8;
+}
+
+double l1l2_residual_band(int band)
+{
+    return (band + 0.5) / L1L2_BANDS - 0.5;
+}
+
+/* Gaussians as wide as a band is high, which sum to 1 at every row. */
+static void weigh_bands(double row, double weight[L1L2_BANDS])
+{
+    double sum = 0.0;
+    row = fmin(fmax(row, -1.0), 1.0);
+    for (int k = 0; k < L1L2_BANDS; k++) {
+        const double distance = (row - l1l2_residual_band(k)) * L1L2_BANDS;
+        weight[k] = exp(-0.5 * distance * distance);
+        sum += weight[k];
+    }
+    for (int k = 0; k < L1L2_BANDS; k++)
+        weight[k] /= sum;
+}
+
+void l1l2_residual_basis(const L1L2ResidualShape *shape, L1L2Point p, double x[L1L2_RESIDUAL_SIZE],
+                         double y[L1L2_RESIDUAL_SIZE])
+{
+    memset(x, 0, L1L2_RESIDUAL_SIZE * sizeof *x);
+    memset(y, 0, L1L2_RESIDUAL_SIZE * sizeof *y);
+    if (shape->model != L1L2STAB_ROLLING_SHUTTER_MIXTURE) {
+        x[0] = y[3] = p.x;
+        x[1] = y[4] = p.y;
+        x[2] = y[5] = 1.0;
+        x[6] = p.x * p.x, y[6] = p.x * p.y;
+        x[7] = p.x * p.y, y[7] = p.y * p.y;
+        return;
+    }
+    const double row = p.y / (2.0 * shape->half_h);
+    weigh_bands(row, x + L1L2_RESIDUAL_X);
+    memcpy(y + L1L2_RESIDUAL_Y, x + L1L2_RESIDUAL_X, L1L2_BANDS * sizeof *y);
+    /* What moves a whole row alike is the bands': roll and zoom that vary by row have only the rest. */
+    x[L1L2_RESIDUAL_ROLL] = -p.y, y[L1L2_RESIDUAL_ROLL] = p.x;
+    y[L1L2_RESIDUAL_ROLL_BY_ROW] = p.x * row;
+    x[L1L2_RESIDUAL_ZOOM] = p.x, y[L1L2_RESIDUAL_ZOOM] = p.y;
+    x[L1L2_RESIDUAL_ZOOM_BY_ROW] = p.x * row;
+    x[L1L2_RESIDUAL_TILT] = p.x * p.x, y[L1L2_RESIDUAL_TILT] = p.x * p.y;
+}
+
+L1L2Point l1l2_residual_at(const L1L2ResidualShape *shape, const L1L2Residual *r, L1L2Point p)
+{
+    double x[L1L2_RESIDUAL_SIZE], y[L1L2_RESIDUAL_SIZE];
+    L1L2Point sum = {0.0, 0.0};
+    l1l2_residual_basis(shape, p, x, y);
+    for (int i = 0; i < l1l2_residual_size(shape); i++)
+        sum.x += x[i] * r->p[i], sum.y += y[i] * r->p[i];
+    return sum;
+}
+
+L1L2Mat l1l2_residual_split(const L1L2ResidualShape *shape, L1L2Residual *r)
+{
+    enum { COLUMNS = 5, ROWS = 10, POINTS = COLUMNS * ROWS };
+    double a = 0.0, b = 0.0, x = 0.0, y = 0.0, norm = 0.0;
+    for (int i = 0; i < POINTS; i++) {
+        const L1L2Point p = {(2.0 * (i % COLUMNS) / (COLUMNS - 1) - 1.0) * shape->half_w,
+                             2.0 * l1l2_residual_band(i / COLUMNS) * shape->half_h};
+        const L1L2Point d = l1l2_residual_at(shape, r, p);
+        a += p.x * d.x + p.y * d.y, b += p.x * d.y - p.y * d.x;
+        x += d.x / POINTS, y += d.y / POINTS;
+        norm += p.x * p.x + p.y * p.y;
+    }
+    a /= norm, b /= norm;
+    if (shape->model == L1L2STAB_ROLLING_SHUTTER_MIXTURE) {
+        for (int k = 0; k < L1L2_BANDS; k++)
+            r->p[L1L2_RESIDUAL_X + k] -= x, r->p[L1L2_RESIDUAL_Y + k] -= y;
+        r->p[L1L2_RESIDUAL_ROLL] -= b, r->p[L1L2_RESIDUAL_ZOOM] -= a;
+    } else {
+        r->p[0] -= a, r->p[1] += b, r->p[2] -= x;
+        r->p[3] -= b, r->p[4] -= a, r->p[5] -= y;
+    }
+    return (L1L2Mat){{a, -b, x, b, a, y, 0.0, 0.0, 0.0}};
+}
+
+double l1l2_residual_reach(const L1L2ResidualShape *shape, const L1L2Residual *r)
+{
+    double reach = 0.0;
+    for (int k = 0; k < 9; k++) {
+        const L1L2Point p = {(k % 3 - 1) * shape->half_w, (k / 3 - 1) * shape->half_h};
+        const L1L2Point d = l1l2_residual_at(shape, r, p);
+        reach = fmax(reach, hypot(d.x, d.y));
+    }
+    return reach;
+}

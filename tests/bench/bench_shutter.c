@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What a rolling shutter leaves after stabilization, against the truth: synthetic clips whose rows are taken at their
+ * own times, handheld, with a vibration of several frequencies. docs/rolling-shutter.md has the table.
+ *
+ *   wobble  where the scene lies in two successive outputs, less the smooth path's step: rms over the picture, px
+ *   skew    where the scene lies in an output, less the nearest similarity: the rows' own error, rms, px
+ *
+ * usage: bench_shutter [FRAMES [AMPLITUDE_PX]]
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "motion.h"
+#include "path.h"
+#include "synth.h"
+#include "wobble.h"
+
+enum { WIDTH = 640, HEIGHT = 360, COLUMNS = 9, ROWS = 13, POINTS = COLUMNS * ROWS, WINDOW = 90 };
+static const double crop_ratio = 0.9;
+
+typedef struct Errors {
+    double wobble, skew; /* sums of squares */
+    int wobbles, skews;
+    double readout;
+} Errors;
+
+static L1L2Mat from_px(const double m[9])
+{
+    L1L2Mat mat;
+    for (int i = 0; i < 9; i++)
+        mat.m[i] = m[i];
+    return mat;
+}
+
+/* Where the mesh has an output point; beyond the border as in the nearest cell. */
+static L1L2Point look_up(const L1L2WarpMesh *mesh, L1L2Point u)
+{
+    const double x = (u.x / mesh->width + 0.5) * (mesh->columns - 1), y = (u.y / mesh->height + 0.5) * (mesh->rows - 1);
+    const int column = (int)fmin(fmax(floor(x), 0.0), mesh->columns - 2);
+    const int row = (int)fmin(fmax(floor(y), 0.0), mesh->rows - 2);
+    const L1L2Point *n = &mesh->node[row * mesh->columns + column], *below = n + mesh->columns;
+    const double a = x - column, b = y - row;
+    return (L1L2Point){
+        (1 - b) * ((1 - a) * n[0].x + a * n[1].x) + b * ((1 - a) * below[0].x + a * below[1].x),
+        (1 - b) * ((1 - a) * n[0].y + a * n[1].y) + b * ((1 - a) * below[0].y + a * below[1].y),
+    };
+}
+
+/* The point of the scene that an output point shows. */
+static L1L2Point shown(const Synth *synth, int t, const L1L2WarpMesh *mesh, L1L2Point u)
+{
+    const L1L2Point p = look_up(mesh, u);
+    double M[9];
+    synth_camera_at(synth, synth_row_time(synth, t, p.y), M);
+    const L1L2Mat camera = from_px(M);
+    return l1l2_mat_apply(&camera, p);
+}
+
+static L1L2Point output_point(int i)
+{
+    return (L1L2Point){(i % COLUMNS / (COLUMNS - 1.0) - 0.5) * WIDTH, (i / COLUMNS / (ROWS - 1.0) - 0.5) * HEIGHT};
+}
+
+/* What the nearest similarity of the output points does not explain. Their mean is 0. */
+static void add_skew(const L1L2Point at[POINTS], Errors *errors)
+{
+    double a = 0.0, b = 0.0, x = 0.0, y = 0.0, norm = 0.0;
+    for (int i = 0; i < POINTS; i++) {
+        const L1L2Point u = output_point(i);
+        a += u.x * at[i].x + u.y * at[i].y;
+        b += u.x * at[i].y - u.y * at[i].x;
+        x += at[i].x / POINTS, y += at[i].y / POINTS;
+        norm += u.x * u.x + u.y * u.y;
+    }
+    a /= norm, b /= norm;
+    for (int i = 0; i < POINTS; i++) {
+        const L1L2Point u = output_point(i);
+        const double dx = at[i].x - (a * u.x - b * u.y + x), dy = at[i].y - (b * u.x + a * u.y + y);
+        errors->skew += dx * dx + dy * dy;
+        errors->skews++;
+    }
+}
+
+/* Frame t, rendered by `now`, and the one before it. */
+static void compare(const Synth *synth, int t, const L1L2PathFrame *f, const L1L2WarpMesh *before,
+                    const L1L2WarpMesh *now, Errors *errors)
+{
+    L1L2Point at[POINTS];
+    const L1L2Mat step = l1l2_mat_rescale(f->S, hypot(WIDTH, HEIGHT) / crop_ratio);
+    for (int i = 0; i < POINTS; i++) {
+        const L1L2Point u = output_point(i), earlier = l1l2_mat_apply(&step, u);
+        at[i] = shown(synth, t, now, u);
+        if (t < 2 || fabs(earlier.x) > 0.5 * WIDTH || fabs(earlier.y) > 0.5 * HEIGHT)
+            continue;
+        const L1L2Point then = shown(synth, t - 1, before, earlier);
+        errors->wobble += (at[i].x - then.x) * (at[i].x - then.x) + (at[i].y - then.y) * (at[i].y - then.y);
+        errors->wobbles++;
+    }
+    add_skew(at, errors);
+}
+
+static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter model)
+{
+    const L1L2StabLogger log = {0};
+    Synth *synth = synth_new(scene);
+    SynthPicture picture = synth_picture_new(L1L2STAB_FORMAT_GRAY8, WIDTH, HEIGHT);
+    const L1L2MotionConfig motion_cfg = {
+        .format = l1l2_format_info(L1L2STAB_FORMAT_GRAY8), .width = WIDTH, .height = HEIGHT, .analysis_size = 640,
+        .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .seed = 1, .log = &log, .rolling_shutter = model,
+    };
+    const L1L2PathConfig path_cfg = {
+        .width = WIDTH, .height = HEIGHT, .lambda = 0.5, .frame_rate = scene->fps, .crop_ratio = crop_ratio,
+        .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
+        .model = L1L2STAB_MOTION_MODEL_SIMILARITY,
+    };
+    const L1L2WobbleConfig wobble_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW};
+    L1L2Motion *motion = NULL;
+    L1L2Path *path = NULL;
+    L1L2Wobble *wobble = NULL;
+    L1L2WarpMesh mesh[2];
+    if (l1l2_motion_create(&motion, &motion_cfg) != L1L2STAB_OK || l1l2_path_create(&path, &path_cfg) != L1L2STAB_OK ||
+        l1l2_wobble_create(&wobble, &wobble_cfg) != L1L2STAB_OK || !l1l2_warp_mesh_init(&mesh[0], WIDTH, HEIGHT) ||
+        !l1l2_warp_mesh_init(&mesh[1], WIDTH, HEIGHT))
+        exit(EXIT_FAILURE);
+    Errors errors = {0};
+    int out = 0;
+    for (int t = 0; t <= frames; t++) {
+        L1L2MotionResult m;
+        if (t < frames) {
+            synth_render_gray(synth, t, picture.data[0], picture.stride[0]);
+            if (l1l2_motion_push(motion, picture.data[0], picture.stride[0], t == 0, &m) != L1L2STAB_OK)
+                exit(EXIT_FAILURE);
+            l1l2_path_push(path, &m.F, t == 0);
+            l1l2_wobble_push(wobble, &m.F, m.has_residual ? &m.residual : NULL, t == 0);
+        } else {
+            l1l2_path_finish(path);
+        }
+        for (L1L2PathFrame f; l1l2_path_pull(path, &f); out++) {
+            const double diagonal_px = hypot(WIDTH, HEIGHT);
+            const L1L2Mat zoom = l1l2_mat_diagonal(crop_ratio, crop_ratio);
+            const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f.B, diagonal_px), zoom);
+            double reach;
+            l1l2_wobble_pull(wobble);
+            const L1L2WarpMesh *bent = l1l2_wobble_bend(wobble, &map, 1.0, &reach);
+            L1L2WarpMesh *now = &mesh[out % 2];
+            if (bent)
+                for (int i = 0; i < bent->columns * bent->rows; i++)
+                    now->node[i] = bent->node[i];
+            else
+                l1l2_warp_mesh_set(now, &map);
+            compare(synth, out, &f, &mesh[(out + 1) % 2], now, &errors);
+        }
+    }
+    errors.readout = l1l2_wobble_readout(wobble);
+    l1l2_motion_free(motion);
+    l1l2_path_free(path);
+    l1l2_wobble_free(wobble);
+    l1l2_warp_mesh_clear(&mesh[0]);
+    l1l2_warp_mesh_clear(&mesh[1]);
+    synth_picture_free(&picture);
+    synth_free(synth);
+    return errors;
+}
+
+int main(int argc, char **argv)
+{
+    static const double readout_ms[] = {0, 20, 27, 33}, hz[] = {0, 5, 10, 20, 30};
+    const int frames = argc > 1 ? atoi(argv[1]) : 180;
+    const double amplitude = argc > 2 ? atof(argv[2]) : 2.0;
+    printf("%dx%d, 30 frames/s, %d frames, handheld; wobble / skew, px\n", WIDTH, HEIGHT, frames);
+    printf("readout ms  vibration    none            homography      mixture         readout found, ms\n");
+    for (int r = 0; r < 4; r++)
+        for (int v = 0; v < 5; v++) {
+            SynthConfig scene = synth_defaults();
+            scene.width = WIDTH, scene.height = HEIGHT;
+            scene.noise = 2.0;
+            scene.readout = readout_ms[r] / 1000.0;
+            scene.vibration = hz[v] > 0.0 ? amplitude : 0.0, scene.vibration_hz = hz[v];
+            printf("%6.0f %9.0f Hz  ", readout_ms[r], hz[v]);
+            double found = 0.0;
+            for (int model = 0; model < 3; model++) {
+                const Errors e = run(&scene, frames, (L1L2StabRollingShutter)model);
+                printf("  %6.3f / %-6.3f", sqrt(e.wobble / e.wobbles), sqrt(e.skew / e.skews));
+                found = e.readout;
+            }
+            printf("  %5.1f\n", found * 1000.0 / scene.fps);
+            fflush(stdout);
+        }
+    return EXIT_SUCCESS;
+}

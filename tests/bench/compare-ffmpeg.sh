@@ -1,0 +1,87 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The element beside FFmpeg's vidstabdetect + vidstabtransform and deshake, at their defaults, on one file and the same
+# cores: CPU and wall time a frame above decoding, ms, medians. All take turns, so that all meet the same machine.
+# usage: compare-ffmpeg.sh BUILD [CLIP.mp4 [ROUNDS [CORES]]]
+# Without a clip, or with '': 1080p30 of the test scene. CORES: as taskset has them, by default 0,1. Needs GNU time.
+set -eu
+
+build=$1
+rounds=${3:-5}
+cores=${4:-0,1}
+export GST_PLUGIN_PATH="$build/plugin"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+clip=${2:-}
+if [ -z "$clip" ]; then
+  clip=$work/clip.mp4
+  "$build/samples/render-shaky" "$work/small.mp4" > "$work/log" 2>&1
+  ffmpeg -v error -i "$work/small.mp4" -an -vf scale=1920:1080:flags=lanczos -frames:v 240 -c:v libx264 -crf 20 \
+    -preset veryfast "$clip"
+fi
+frames=$(ffprobe -v error -select_streams v -count_packets -show_entries stream=nb_read_packets -of csv=p=0 "$clip" |
+  tr -d ',')
+
+measured() { /usr/bin/time -f "$what %U %S %e" -a -o "$work/measured" taskset -c "$cores" "$@"; }
+by_ffmpeg() { measured ffmpeg -v error -nostdin -i "$clip" -an "$@" -f null -; }
+by_gst() { measured gst-launch-1.0 -q filesrc location="$clip" ! parsebin ! avdec_h264 "$@" ! fakesink; }
+
+run() {
+  case $what in
+    ffmpeg-decode) by_ffmpeg ;;
+    vidstabdetect) by_ffmpeg -vf "vidstabdetect=result=$work/motion.trf" ;;
+    vidstabtransform) by_ffmpeg -vf "vidstabtransform=input=$work/motion.trf" ;;
+    deshake) by_ffmpeg -vf deshake ;;
+    gst-decode) by_gst ;;
+    bicubic) by_gst ! l1l2stab ;;
+    bilinear) by_gst ! l1l2stab interpolation=bilinear ;;
+  esac
+}
+
+all='ffmpeg-decode vidstabdetect vidstabtransform deshake gst-decode bicubic bilinear'
+for round in $(seq "$rounds"); do
+  for what in $all; do
+    run > "$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
+  done
+done
+
+# median WHAT COLUMN: ms a frame; 1 is CPU, 2 is wall time
+median() {
+  awk -v what="$1" -v column="$2" -v frames="$frames" \
+    '$1 == what { print (column == 1 ? $2 + $3 : $4) * 1000 / frames }' "$work/measured" | sort -g |
+    awk '{ v[NR] = $1 } END { print NR % 2 ? v[(NR + 1) / 2] : (v[NR / 2] + v[NR / 2 + 1]) / 2 }'
+}
+
+above() { echo "$(median "$1" "$3") $(median "$2" "$3")" | awk '{ print $1 - $2 }'; }
+
+{
+  for column in 1 2; do
+    for what in $all; do
+      case $what in
+        *-decode) echo "$column $what $(median "$what" "$column")" ;;
+        bi*) echo "$column $what $(above "$what" gst-decode "$column")" ;;
+        *) echo "$column $what $(above "$what" ffmpeg-decode "$column")" ;;
+      esac
+    done
+  done
+} | awk -v frames="$frames" -v rounds="$rounds" '
+  { ms[$1, $2] = $3 }
+  function line(name, what) { printf "%-42s %8.2f %8.2f\n", name, ms[1, what], ms[2, what] }
+  function ratio(name, c, w) { printf "%-42s %8.1f %8.1f\n", name, c, w }
+  END {
+    for (c = 1; c <= 2; c++) vidstab[c] = ms[c, "vidstabdetect"] + ms[c, "vidstabtransform"]
+    printf "%d frames, medians of %d; ms a frame              CPU     wall\n", frames, rounds
+    line("decoding alone, ffmpeg", "ffmpeg-decode")
+    line("decoding alone, gst-launch-1.0", "gst-decode")
+    print "above decoding:"
+    line("  vidstabdetect", "vidstabdetect")
+    line("  vidstabtransform (bilinear)", "vidstabtransform")
+    line("  deshake", "deshake")
+    line("  l1l2stab (bicubic)", "bicubic")
+    line("  l1l2stab interpolation=bilinear", "bilinear")
+    print "times as fast:"
+    ratio("  bicubic over vidstabdetect + transform", vidstab[1] / ms[1, "bicubic"], vidstab[2] / ms[2, "bicubic"])
+    ratio("  bilinear over vidstabdetect + transform", vidstab[1] / ms[1, "bilinear"], vidstab[2] / ms[2, "bilinear"])
+    ratio("  bicubic over deshake", ms[1, "deshake"] / ms[1, "bicubic"], ms[2, "deshake"] / ms[2, "bicubic"])
+  }'

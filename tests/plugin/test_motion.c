@@ -184,7 +184,7 @@ motion_suite (void)
   suite_add_tcase (s, tc);
   tcase_add_checked_fixture (tc, make_folder, remove_folder);
   tcase_add_loop_test (tc, a_second_run_gives_the_same_bytes_without_analysis,
-      L1L2STAB_MOTION_MODEL_TRANSLATION, L1L2STAB_MOTION_MODEL_SIMILARITY + 1);
+      L1L2STAB_MOTION_MODEL_TRANSLATION, L1L2STAB_MOTION_MODEL_AFFINE + 1);
   tcase_add_test (tc,
       the_file_is_whole_when_the_stream_ends_and_reads_as_documented);
   tcase_add_test (tc,

@@ -211,11 +211,17 @@ static gboolean
 gst_l1l2_stab_open_files (GstL1L2Stab * self)
 {
   gchar *motion_in, *motion_out;
+  L1L2StabConfig settings;
   gboolean ok;
 
   gst_l1l2_stab_settings_dup_files (&self->settings, &motion_in, &motion_out);
   ok = gst_l1l2_stab_motion_open (&self->output.stream.files,
       GST_ELEMENT_CAST (self), motion_in, motion_out);
+  gst_l1l2_stab_settings_in_use (&self->settings, &settings);
+  if (ok && motion_in
+      && settings.rolling_shutter != L1L2STAB_ROLLING_SHUTTER_NONE)
+    GST_ELEMENT_WARNING (self, LIBRARY, SETTINGS,
+        ("motion-in has nothing for rolling-shutter to go by."), (NULL));
   g_free (motion_in);
   g_free (motion_out);
   return ok;

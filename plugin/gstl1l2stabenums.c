@@ -75,3 +75,23 @@ gst_l1l2_stab_motion_model_get_type (void)
         g_enum_register_static ("GstL1L2StabMotionModel", values));
   return type;
 }
+
+GType
+gst_l1l2_stab_rolling_shutter_get_type (void)
+{
+  static gsize type = 0;
+  static const GEnumValue values[] = {
+    {L1L2STAB_ROLLING_SHUTTER_NONE, "Nothing is done about it", "none"},
+    {L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY,
+        "One homography for each frame: the wobble between frames",
+        "homography"},
+    {L1L2STAB_ROLLING_SHUTTER_MIXTURE,
+        "A homography for each row: the skew within a frame, too", "mixture"},
+    {0, NULL, NULL}
+  };
+
+  if (g_once_init_enter (&type))
+    g_once_init_leave (&type,
+        g_enum_register_static ("GstL1L2StabRollingShutter", values));
+  return type;
+}

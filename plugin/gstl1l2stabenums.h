@@ -20,6 +20,10 @@ GType gst_l1l2_stab_output_size_get_type (void);
 #define GST_TYPE_L1L2_STAB_MOTION_MODEL (gst_l1l2_stab_motion_model_get_type ())
 GType gst_l1l2_stab_motion_model_get_type (void);
 
+#define GST_TYPE_L1L2_STAB_ROLLING_SHUTTER \
+  (gst_l1l2_stab_rolling_shutter_get_type ())
+GType gst_l1l2_stab_rolling_shutter_get_type (void);
+
 G_END_DECLS
 
 #endif

@@ -14,6 +14,7 @@ enum
   PROP_OVERLAP,
   PROP_JOIN,
   PROP_MOTION_MODEL,
+  PROP_ROLLING_SHUTTER,
   PROP_INTERPOLATION,
   PROP_OUTPUT_SIZE,
   PROP_THREADS,
@@ -88,6 +89,12 @@ install_path (GObjectClass * klass, const L1L2StabConfig * defaults)
 static void
 install_picture (GObjectClass * klass, const L1L2StabConfig * defaults)
 {
+  g_object_class_install_property (klass, PROP_ROLLING_SHUTTER,
+      g_param_spec_enum ("rolling-shutter", "Rolling shutter",
+          "What is done about wobble and skew, which are left when the camera's "
+          "shake is gone; motion-in has nothing for it",
+          GST_TYPE_L1L2_STAB_ROLLING_SHUTTER, defaults->rolling_shutter,
+          SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_INTERPOLATION,
       g_param_spec_enum ("interpolation", "Interpolation",
           "How pixels are interpolated: sharpness against time",
@@ -135,6 +142,7 @@ gst_l1l2_stab_settings_install (GObjectClass * klass)
 
   gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_JOIN, 0);
   gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_MOTION_MODEL, 0);
+  gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_ROLLING_SHUTTER, 0);
   gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_INTERPOLATION, 0);
   gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_OUTPUT_SIZE, 0);
 }
@@ -176,6 +184,8 @@ find_field (GstL1L2StabSettings * settings, guint id)
       return &config->join;
     case PROP_MOTION_MODEL:
       return &config->motion_model;
+    case PROP_ROLLING_SHUTTER:
+      return &config->rolling_shutter;
     case PROP_INTERPOLATION:
       return &config->interpolation;
     case PROP_OUTPUT_SIZE:

@@ -36,7 +36,7 @@ assert_numbers (const GstStructure * frame, const L1L2StabInfo * info)
     {"motion", info->F}, {"update", info->B}, {"camera", info->C},
     {"path", info->P}, {"warp", info->warp},
   };
-  gdouble matrix[9], quality, lambda, crop_ratio, bypass;
+  gdouble matrix[9], quality, lambda, crop_ratio, bypass, residual, readout;
   gboolean start, lost, fallback, early;
   gint tracks, inliers;
   guint i;
@@ -48,13 +48,16 @@ assert_numbers (const GstStructure * frame, const L1L2StabInfo * info)
   }
   fail_unless (gst_structure_get (frame, "quality", G_TYPE_DOUBLE, &quality,
           "lambda", G_TYPE_DOUBLE, &lambda, "crop-ratio", G_TYPE_DOUBLE,
-          &crop_ratio, "bypass", G_TYPE_DOUBLE, &bypass, "tracks", G_TYPE_INT,
+          &crop_ratio, "bypass", G_TYPE_DOUBLE, &bypass, "residual",
+          G_TYPE_DOUBLE, &residual, "readout", G_TYPE_DOUBLE, &readout,
+          "tracks", G_TYPE_INT,
           &tracks, "inliers", G_TYPE_INT, &inliers, "path-start",
           G_TYPE_BOOLEAN, &start, "motion-lost", G_TYPE_BOOLEAN, &lost,
           "path-fallback", G_TYPE_BOOLEAN, &fallback, "early", G_TYPE_BOOLEAN,
           &early, NULL));
   fail_unless (quality == info->quality && lambda == info->lambda);
   fail_unless (crop_ratio == info->crop_ratio && bypass == 0);
+  fail_unless (residual == info->residual && readout == info->readout);
   fail_unless (tracks == info->tracks && inliers == info->inliers);
   fail_unless (start == ((info->flags & L1L2STAB_INFO_PATH_START) != 0));
   fail_unless (lost == ((info->flags & L1L2STAB_INFO_MOTION_LOST) != 0));

@@ -18,7 +18,7 @@ GST_START_TEST (the_defaults_are_the_librarys)
   GstElement *element = gst_element_factory_make ("l1l2stab", NULL);
   L1L2StabConfig config;
   gdouble lambda, crop_ratio;
-  gint window, overlap, join, model, interpolation, output_size, threads;
+  gint window, overlap, join, model, shutter, interpolation, output_size, threads;
   gboolean qos, bypass, post_messages;
   gchar *motion_in, *motion_out;
 
@@ -26,7 +26,8 @@ GST_START_TEST (the_defaults_are_the_librarys)
   g_object_get (element, "lambda", &lambda, "crop-ratio", &crop_ratio,
       "window", &window, "overlap", &overlap, "join", &join, "interpolation",
       &interpolation, "output-size", &output_size, "threads", &threads, "qos",
-      &qos, "motion-model", &model, "bypass", &bypass, "post-messages",
+      &qos, "motion-model", &model,
+      "rolling-shutter", &shutter, "bypass", &bypass, "post-messages",
       &post_messages, "motion-in", &motion_in, "motion-out", &motion_out, NULL);
   fail_unless_equals_float (lambda, config.lambda);
   fail_unless_equals_float (crop_ratio, config.crop_ratio);
@@ -37,6 +38,7 @@ GST_START_TEST (the_defaults_are_the_librarys)
   fail_unless_equals_int (output_size, config.output_size);
   fail_unless_equals_int (threads, config.threads);
   fail_unless_equals_int (model, config.motion_model);
+  fail_unless_equals_int (shutter, config.rolling_shutter);
   fail_if (qos || bypass || post_messages || motion_in || motion_out);
   gst_object_unref (element);
 }
@@ -148,7 +150,7 @@ GST_END_TEST;
 static const gchar *names[] = {
   "lambda", "window", "overlap", "crop-ratio", "join", "interpolation",
   "output-size", "threads", "motion-model", "bypass", "post-messages",
-  "motion-in", "motion-out"
+  "motion-in", "motion-out", "rolling-shutter"
 };
 
 GST_START_TEST (every_setting_reads_back)
@@ -156,7 +158,7 @@ GST_START_TEST (every_setting_reads_back)
   GstElement *element = gst_element_factory_make ("l1l2stab", NULL);
   static const gchar *values[] = {
     "2.25", "60", "20", "0.75", "blend", "lanczos", "crop", "3", "affine",
-    "true", "true", "a.motion", "b.motion"
+    "true", "true", "a.motion", "b.motion", "mixture"
   };
   guint i;
 

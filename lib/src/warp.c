@@ -13,7 +13,8 @@
 #include "warp_u8.h"
 
 enum {
-    BAND_ROWS = 16 /* enough work to be worth a thread's while, few enough to share a frame out evenly */
+    ROWS_AHEAD = 6, /* below the first tap of a sample: more than the taps of this run and the next reach */
+    BAND_ROWS = 32 /* enough work to be worth a thread's while, few enough to share a frame out evenly */
 };
 
 struct L1L2Warp {
@@ -92,6 +93,20 @@ static L1L2WarpRun *find_run(const L1L2WarpConfig *cfg, int taps, int components
     return (cfg->plain ? l1l2_warp_u8_run_plain : l1l2_warp_u8_run)(taps, components);
 }
 
+/* The source that a run some rows further down will read is fetched while this one is rendered: tiles are too narrow
+ * for the processor to guess it. */
+static void fetch_ahead(const PlaneJob *job, const int32_t *x, const int32_t *y, int count)
+{
+#if defined(__GNUC__)
+    const int step = 64 / job->sample_bytes; /* a cache line */
+    for (int i = 0; i < count; i += step) {
+        const int column = x[i] >> L1L2_WARP_PHASE_BITS, row = (y[i] >> L1L2_WARP_PHASE_BITS) + ROWS_AHEAD;
+        if (column >= 0 && column < job->src.width && row >= 0 && row < job->src.height)
+            __builtin_prefetch(job->src.data + row * job->src.stride + column * job->sample_bytes);
+    }
+#endif
+}
+
 /* Tile by tile: what is the same for all rows of one is found once. */
 static void render_band(const PlaneJob *job, const L1L2WarpKernel *kernel, int band)
 {
@@ -108,6 +123,7 @@ static void render_band(const PlaneJob *job, const L1L2WarpKernel *kernel, int b
                 job->generators->mesh(&job->mesh, &cells, v, x, y);
             else
                 job->generators->affine(&job->affine, u, v, count, x, y);
+            fetch_ahead(job, x, y, count);
             job->run(&job->src, kernel, x, y, count, job->dst + v * job->dst_stride + u * job->sample_bytes);
         }
     }

@@ -16,11 +16,30 @@ static inline int clamp_index(int index, int size)
     return index < 0 ? 0 : index < size ? index : size - 1;
 }
 
+/* w: weight of b. */
+static inline int lerp(int a, int b, int w)
+{
+    return a + (((b - a) * w + (L1L2_WARP_ONE >> 1)) >> L1L2_WARP_WEIGHT_BITS);
+}
+
+/* Four bytes as warp_u8.h has it for two taps. */
+static inline uint8_t lerp_u8(const uint8_t *const *row, ptrdiff_t left, ptrdiff_t right, int wx, int wy)
+{
+    const int one = 1 << L1L2_WARP_U8_LINEAR_BITS;
+    const int upper = lerp(row[0][left] * one, row[0][right] * one, wx);
+    const int lower = lerp(row[1][left] * one, row[1][right] * one, wx);
+    return (uint8_t)((lerp(upper, lower, wy) + L1L2_WARP_U8_LINEAR_ROUND) >> L1L2_WARP_U8_LINEAR_BITS);
+}
+
 /* One sample. row[r]: row r of the taps; col[k]: bytes to tap k in it. */
 SPECIALIZED void weigh(const uint8_t *const *row, const ptrdiff_t *col, const int16_t *wx, const int16_t *wy,
                        uint8_t *dst, const int taps, const int components)
 {
     for (int c = 0; c < components; c++) {
+        if (taps == 2) {
+            dst[c] = lerp_u8(row, col[0] + c, col[1] + c, wx[1], wy[1]);
+            continue;
+        }
         int sum = L1L2_WARP_U8_ROUND;
         for (int r = 0; r < taps; r++) {
             int row_sum = 0;

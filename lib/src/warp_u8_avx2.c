@@ -10,6 +10,7 @@
 
 #include "warp_avx2.h"
 #include "warp_u8_impl.h"
+#include "warp_u8_linear_avx2.h"
 
 enum { WINDOW = 16 }; /* bytes */
 
@@ -121,11 +122,14 @@ SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, con
                      int count, uint8_t *dst, const int taps, const int components)
 {
     L1L2WarpRun *const plain = l1l2_warp_u8_run_plain(taps, components);
-    const Reach reach = find_reach(src, taps, components);
-    const int group = components == 1 ? 8 : components == 2 ? 4 : 2;
+    Reach reach = find_reach(src, taps, components);
+    if (taps == 2 && reach.rows > 0)
+        reach.rows--; /* three rows */
+    const int lanes = taps == 2 ? 16 : 8, group = components == 1 ? lanes : components == 2 ? lanes / 2 : lanes / 4;
     int i = 0;
     for (; i + group <= count; i += group)
-        if (!render_group(src, kernel, &reach, x + i, y + i, dst + i * components, taps, components))
+        if (!(taps == 2 ? render_linear(src, &reach, x + i, y + i, dst + i * components, components)
+                        : render_group(src, kernel, &reach, x + i, y + i, dst + i * components, taps, components)))
             plain(src, kernel, x + i, y + i, group, dst + i * components);
     plain(src, kernel, x + i, y + i, count - i, dst + i * components);
 }

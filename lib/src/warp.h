@@ -6,6 +6,8 @@
  * output samples, a kernel weighs the taps around each position, a sample type reads and writes them.
  * All planes follow one map, chroma in its own coordinates with its siting.
  * "Inside the source": a sample position that lies in the frame's rectangle; taps beyond the edge repeat the edge.
+ * Levels are cut off at the ends of the depth, not of a limited range, as other scalers do: overshoot and a camera's
+ * super-white have their headroom.
  */
 #ifndef L1L2_WARP_H
 #define L1L2_WARP_H

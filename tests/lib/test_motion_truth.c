@@ -64,6 +64,22 @@ START_TEST(a_tripod_stands_still)
 }
 END_TEST
 
+START_TEST(ten_bits_give_the_motion_of_eight)
+{
+    static const char *const names[] = {"shake 5 px", "walking", "tripod"};
+    static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_I420_10LE, L1L2STAB_FORMAT_P010_10LE,
+                                             L1L2STAB_FORMAT_GRAY16_LE};
+    const SynthConfig *cfg = &synth_case_named(names[_i])->cfg;
+    SynthTrial eight = synth_trial_new(cfg, 30), more = synth_trial_in(cfg, 30, formats[_i]);
+    for (int t = 0; t < 30; t++) {
+        const double apart = synth_trial_distance(cfg, eight.info[t].F, more.info[t].F);
+        ck_assert_msg(apart <= 0.05, "%s: %g px apart in frame %d", names[_i], apart, t);
+    }
+    synth_trial_free(&eight);
+    synth_trial_free(&more);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("motion_truth");
@@ -72,6 +88,7 @@ int main(void)
     tcase_add_test(tc, the_motion_of_planar_clips_is_exact_to_a_twentieth_of_a_pixel);
     tcase_add_test(tc, over_ten_seconds_the_path_drifts_by_less_than_a_pixel);
     tcase_add_test(tc, a_tripod_stands_still);
+    tcase_add_loop_test(tc, ten_bits_give_the_motion_of_eight, 0, 3);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);
 }

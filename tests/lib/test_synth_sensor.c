@@ -25,6 +25,39 @@ START_TEST(ten_bits_show_the_same_picture_more_finely)
 }
 END_TEST
 
+/* A format of more bits, and the one of eight that is laid out alike. */
+typedef struct Twins {
+    L1L2StabFormat deep, eight;
+    int depth, shift;
+} Twins;
+
+static const Twins twins[] = {
+    {L1L2STAB_FORMAT_GRAY16_LE, L1L2STAB_FORMAT_GRAY8, 16, 0}, {L1L2STAB_FORMAT_I420_10LE, L1L2STAB_FORMAT_I420, 10, 0},
+    {L1L2STAB_FORMAT_I422_12LE, L1L2STAB_FORMAT_Y42B, 12, 0},  {L1L2STAB_FORMAT_Y444_16LE, L1L2STAB_FORMAT_Y444, 16, 0},
+    {L1L2STAB_FORMAT_P010_10LE, L1L2STAB_FORMAT_NV12, 10, 6},  {L1L2STAB_FORMAT_P012_LE, L1L2STAB_FORMAT_NV12, 12, 4},
+    {L1L2STAB_FORMAT_P016_LE, L1L2STAB_FORMAT_NV12, 16, 0},
+};
+
+START_TEST(formats_of_more_bits_show_the_same_in_all_planes)
+{
+    const Twins *f = &twins[_i];
+    const SynthConfig cfg = small_clip();
+    Synth *s = synth_new(&cfg);
+    SynthPicture p = synth_picture_new(f->eight, WIDTH, HEIGHT), q = synth_picture_new(f->deep, WIDTH, HEIGHT);
+    ck_assert(p.planes == q.planes && 2 * p.size == q.size);
+    synth_render(s, 3, p.format, p.data, p.stride);
+    synth_render(s, 3, q.format, q.data, q.stride);
+    for (size_t i = 0; i < p.size; i++) {
+        const int word = q.data[0][2 * i] + 256 * q.data[0][2 * i + 1];
+        ck_assert_int_eq(word % (1 << f->shift), 0);
+        ck_assert_near((double)word / (1 << f->shift) / (1 << (f->depth - 8)), p.data[0][i], 0.626);
+    }
+    synth_picture_free(&p);
+    synth_picture_free(&q);
+    synth_free(s);
+}
+END_TEST
+
 START_TEST(the_noise_has_the_strength_that_was_asked_for_at_each_depth)
 {
     SynthConfig cfg = small_clip();
@@ -168,6 +201,7 @@ int main(void)
     TCase *tc = tcase_create("synth_sensor");
     tcase_set_timeout(tc, 60);
     tcase_add_test(tc, ten_bits_show_the_same_picture_more_finely);
+    tcase_add_loop_test(tc, formats_of_more_bits_show_the_same_in_all_planes, 0, sizeof twins / sizeof twins[0]);
     tcase_add_test(tc, the_noise_has_the_strength_that_was_asked_for_at_each_depth);
     tcase_add_test(tc, coding_rounds_the_levels_otherwise_in_each_frame);
     tcase_add_test(tc, a_logo_stays_in_its_corner_and_has_the_contrast_of_letters);

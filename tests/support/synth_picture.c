@@ -15,6 +15,20 @@ SynthLayout synth_layout_of(L1L2StabFormat format)
     case L1L2STAB_FORMAT_NV21: return (SynthLayout){2, 0, 0, {0, 2}, {-1, 1}, 1, 1, 8, 0};
     case L1L2STAB_FORMAT_Y42B: return (SynthLayout){3, 0, 0, {0, 1, 2}, {-1, -1, -1}, 1, 0, 8, 0};
     case L1L2STAB_FORMAT_Y444: return (SynthLayout){3, 0, 0, {0, 1, 2}, {-1, -1, -1}, 0, 0, 8, 0};
+    case L1L2STAB_FORMAT_NV16: return (SynthLayout){2, 0, 0, {0, 1}, {-1, 2}, 1, 0, 8, 0};
+    case L1L2STAB_FORMAT_NV61: return (SynthLayout){2, 0, 0, {0, 2}, {-1, 1}, 1, 0, 8, 0};
+    case L1L2STAB_FORMAT_NV24: return (SynthLayout){2, 0, 0, {0, 1}, {-1, 2}, 0, 0, 8, 0};
+    case L1L2STAB_FORMAT_GRAY16_LE: return (SynthLayout){1, 0, 0, {0}, {-1}, 0, 0, 16, 0};
+    case L1L2STAB_FORMAT_I420_10LE: return (SynthLayout){3, 0, 0, {0, 1, 2}, {-1, -1, -1}, 1, 1, 10, 0};
+    case L1L2STAB_FORMAT_I420_12LE: return (SynthLayout){3, 0, 0, {0, 1, 2}, {-1, -1, -1}, 1, 1, 12, 0};
+    case L1L2STAB_FORMAT_I422_10LE: return (SynthLayout){3, 0, 0, {0, 1, 2}, {-1, -1, -1}, 1, 0, 10, 0};
+    case L1L2STAB_FORMAT_I422_12LE: return (SynthLayout){3, 0, 0, {0, 1, 2}, {-1, -1, -1}, 1, 0, 12, 0};
+    case L1L2STAB_FORMAT_Y444_10LE: return (SynthLayout){3, 0, 0, {0, 1, 2}, {-1, -1, -1}, 0, 0, 10, 0};
+    case L1L2STAB_FORMAT_Y444_12LE: return (SynthLayout){3, 0, 0, {0, 1, 2}, {-1, -1, -1}, 0, 0, 12, 0};
+    case L1L2STAB_FORMAT_Y444_16LE: return (SynthLayout){3, 0, 0, {0, 1, 2}, {-1, -1, -1}, 0, 0, 16, 0};
+    case L1L2STAB_FORMAT_P010_10LE: return (SynthLayout){2, 0, 0, {0, 1}, {-1, 2}, 1, 1, 10, 6};
+    case L1L2STAB_FORMAT_P012_LE: return (SynthLayout){2, 0, 0, {0, 1}, {-1, 2}, 1, 1, 12, 4};
+    case L1L2STAB_FORMAT_P016_LE: return (SynthLayout){2, 0, 0, {0, 1}, {-1, 2}, 1, 1, 16, 0};
     case L1L2STAB_FORMAT_BGRX:
     case L1L2STAB_FORMAT_BGRA: return (SynthLayout){1, 4, 2, {0}, {-1}, 0, 0, 8, 0};
     case L1L2STAB_FORMAT_RGBX:

@@ -55,11 +55,11 @@ static double acceleration(const SynthConfig *cfg, const double A[9], const doub
     return sum;
 }
 
-static L1L2Stab *stabilizer_new(const SynthConfig *cfg)
+static L1L2Stab *stabilizer_new(const SynthConfig *cfg, L1L2StabFormat format)
 {
     L1L2StabConfig config;
     l1l2stab_config_init(&config, sizeof config);
-    config.format = L1L2STAB_FORMAT_GRAY8;
+    config.format = format;
     config.width = cfg->width;
     config.height = cfg->height;
     config.frame_rate = cfg->fps;
@@ -70,12 +70,13 @@ static L1L2Stab *stabilizer_new(const SynthConfig *cfg)
     return stab;
 }
 
-static void push(L1L2Stab *stab, const Synth *synth, const SynthConfig *cfg, int t)
+static void push(L1L2Stab *stab, const Synth *synth, const SynthConfig *cfg, L1L2StabFormat format, int t)
 {
-    uint8_t *picture = synth_alloc((size_t)cfg->width * (size_t)cfg->height, 1);
-    synth_render_gray(synth, t, picture, cfg->width);
-    const L1L2StabFrame frame = {
-        .data = {picture}, .stride = {cfg->width}, .pts = t, .opaque = picture, .release = free};
+    const SynthPicture picture = synth_picture_new(format, cfg->width, cfg->height);
+    synth_render(synth, t, format, picture.data, picture.stride);
+    L1L2StabFrame frame = {.pts = t, .opaque = picture.data[0], .release = free};
+    memcpy(frame.data, picture.data, sizeof frame.data);
+    memcpy(frame.stride, picture.stride, sizeof frame.stride);
     if (l1l2stab_push(stab, &frame) != L1L2STAB_OK)
         abort();
 }
@@ -148,16 +149,21 @@ static void judge_path(SynthTrial *trial, const SynthConfig *cfg, const Synth *s
 
 SynthTrial synth_trial_new(const SynthConfig *cfg, int frames)
 {
+    return synth_trial_in(cfg, frames, L1L2STAB_FORMAT_GRAY8);
+}
+
+SynthTrial synth_trial_in(const SynthConfig *cfg, int frames, L1L2StabFormat format)
+{
     SynthTrial trial = {.frames = frames};
     trial.info = synth_alloc((size_t)frames + 1, sizeof *trial.info);
     trial.error = synth_alloc((size_t)frames, sizeof *trial.error);
     trial.bias = synth_alloc((size_t)frames, sizeof *trial.bias);
     trial.contrast = synth_alloc((size_t)frames, sizeof *trial.contrast);
     Synth *synth = synth_new(cfg);
-    L1L2Stab *stab = stabilizer_new(cfg);
+    L1L2Stab *stab = stabilizer_new(cfg, format);
     int got = 0;
     for (int t = 0; t < frames; t++) {
-        push(stab, synth, cfg, t);
+        push(stab, synth, cfg, format, t);
         got += pull_all(stab, trial.info + got);
     }
     l1l2stab_finish(stab);

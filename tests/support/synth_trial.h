@@ -22,8 +22,10 @@ typedef struct SynthTrial {
     double stage_ms[L1L2STAB_STAGE_COUNT]; /* a frame */
 } SynthTrial;
 
-/* The first `frames` frames, in a grey format, with the library's defaults. Aborts when out of memory. */
+/* The first `frames` frames, in grey of 8 bits or another format, with the library's defaults. Aborts when out of
+ * memory. */
 SynthTrial synth_trial_new(const SynthConfig *cfg, int frames);
+SynthTrial synth_trial_in(const SynthConfig *cfg, int frames, L1L2StabFormat format);
 void synth_trial_free(SynthTrial *trial);
 
 /* How far apart two motions of a frame put its corners: rms, px. */

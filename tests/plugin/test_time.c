@@ -163,6 +163,33 @@ GST_START_TEST (a_live_source_in_time_is_never_hurried)
 
 GST_END_TEST;
 
+static const guint windows[] = { 4, 30, 150 };
+
+GST_START_TEST (a_live_frames_delay_is_the_reported_latency_within_a_frame)
+{
+  const guint window = windows[__i__];
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", window, NULL);
+  const GstClockTime reported = gst_harness_query_latency (h);
+  guint i;
+
+  for (i = 0; i < 2 * window; i++) {
+    GstBuffer *buffer;
+
+    push_live (h, i * FRAME_DURATION);
+    buffer = gst_harness_try_pull (h);
+    fail_unless_equals_int (buffer != NULL, i >= window - 1);
+    if (buffer) {
+      const GstClockTime delay = clock_time (h) - GST_BUFFER_PTS (buffer);
+
+      fail_unless (delay <= reported && reported - delay <= FRAME_DURATION);
+      gst_buffer_unref (buffer);
+    }
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (what_waits_for_a_frame_leaves_with_it)
 {
   GstHarness *h = live_harness_new ();
@@ -315,6 +342,9 @@ time_suite (void)
   tcase_add_test (tc, a_live_source_at_half_its_rate_is_in_time);
   tcase_add_test (tc, a_live_source_with_a_gap_of_three_seconds_is_in_time);
   tcase_add_test (tc, a_live_source_in_time_is_never_hurried);
+  tcase_add_loop_test (tc,
+      a_live_frames_delay_is_the_reported_latency_within_a_frame, 0,
+      G_N_ELEMENTS (windows));
   tcase_add_test (tc, what_waits_for_a_frame_leaves_with_it);
   tcase_add_test (tc, in_a_pause_no_time_goes_by);
   tcase_add_test (tc, a_flush_leaves_the_clock_nothing_to_let_go);

@@ -186,7 +186,7 @@ static void start_shot(L1L2Motion *m, L1L2MotionResult *out, const char *how)
  * end. */
 static void fit_residual(L1L2Motion *m, L1L2Rung *rung, L1L2MotionResult *out)
 {
-    const double wide = 3.0, min_share = 0.7, most = 0.85, few = 0.7;
+    const double wide = 3.0, min_share = 0.7, min_explained = 0.3, most = 0.85, few = 0.7;
     const L1L2ResidualShape shape = {m->cfg.rolling_shutter, m->voters.half_w, m->voters.half_h};
     const int count = m->points;
     const double threshold = m->ladder.threshold;
@@ -201,7 +201,7 @@ static void fit_residual(L1L2Motion *m, L1L2Rung *rung, L1L2MotionResult *out)
         return;
     const int inliers = l1l2_motion_residual_fit(&shape, m->pair, count, threshold, agrees, &F, &out->residual);
     out->has_residual = inliers >= (found ? 1 : min_share * count);
-    if (!out->has_residual)
+    if (!out->has_residual || out->residual.explained < min_explained * out->residual.all)
         return;
     memcpy(m->inlier, agrees, sizeof agrees);
     if (!found || (inliers >= most * count && rung->inliers < few * inliers)) {

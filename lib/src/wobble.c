@@ -16,8 +16,8 @@ static const double unmeasured = 0.1;
 static const double max_reach = 0.02;
 
 /* The differences count as far as they explain the points that they were not made from, over some frames. Noise alone
- * explains -6 %, ten real clips 3 to 72 %; where it was under 10 % the picture got worse. */
-static const double min_explained = 0.1, enough_explained = 0.25, explained_fade = 0.95;
+ * explains -6 %, ten real clips 3 to 72 %; where it was under 30 % one got worse. */
+static const double min_explained = 0.3, enough_explained = 0.5, explained_fade = 0.95;
 
 /* The readout is believed where it explains so much of what the rows do, and where it is possible at all. */
 static const double min_agreement = 0.4, full_agreement = 0.6, max_readout = 1.0, impossible_readout = 1.5;

@@ -138,9 +138,8 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
             l1l2_path_finish(path);
         }
         for (L1L2PathFrame f; l1l2_path_pull(path, &f); out++) {
-            const double diagonal_px = hypot(WIDTH, HEIGHT);
-            const L1L2Mat zoom = l1l2_mat_diagonal(crop_ratio, crop_ratio);
-            const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f.B, diagonal_px), zoom);
+            const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f.B, hypot(WIDTH, HEIGHT)),
+                                             l1l2_mat_diagonal(crop_ratio, crop_ratio));
             double reach;
             l1l2_wobble_pull(wobble);
             const L1L2WarpMesh *bent = l1l2_wobble_bend(wobble, &map, 1.0, &reach);

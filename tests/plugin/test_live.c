@@ -44,9 +44,11 @@ assert_whole (GstHarness * h, guint start, guint rest)
 
 GST_START_TEST (a_bypass_acts_on_the_next_frame_out_and_keeps_the_delay)
 {
-  GstHarness *h = stab_noise_harness_new (WINDOW);
+  GstHarness *h = stab_harness_new (NULL, "window", WINDOW, NULL);
   guint i;
 
+  g_object_set (h->element, "rolling-shutter", __i__, NULL);
+  gst_harness_set_src_caps_str (h, NOISE_CAPS);
   for (i = 0; i < N_FRAMES; i++) {
     g_object_set (h->element, "bypass", i >= ON + WINDOW - 1, NULL);
     stab_noise_push (h, i, 1);
@@ -296,7 +298,9 @@ live_suite (void)
   TCase *tc = tcase_create ("live");
 
   suite_add_tcase (s, tc);
-  tcase_add_test (tc, a_bypass_acts_on_the_next_frame_out_and_keeps_the_delay);
+  tcase_add_loop_test (tc,
+      a_bypass_acts_on_the_next_frame_out_and_keeps_the_delay,
+      L1L2STAB_ROLLING_SHUTTER_NONE, L1L2STAB_ROLLING_SHUTTER_MIXTURE + 1);
   tcase_add_test (tc,
       a_stream_that_starts_bypassed_is_whole_from_its_first_frame);
   tcase_add_test (tc,

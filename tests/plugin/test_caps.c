@@ -82,7 +82,14 @@ GST_START_TEST (only_progressive_mono_linear_video_of_usable_size_is_taken)
   fail_unless (is_accepted (h, SMALL_CAPS ", multiview-mode=mono"));
   fail_if (is_accepted (h, SMALL_CAPS ", interlace-mode=interleaved"));
   fail_if (is_accepted (h, SMALL_CAPS ", interlace-mode=mixed"));
+  fail_if (is_accepted (h, SMALL_CAPS ", interlace-mode=fields"));
+  fail_if (is_accepted (h, "video/x-raw(format:Interlaced), format=I420, "
+          "width=64, height=48, framerate=25/1, interlace-mode=alternate"));
   fail_if (is_accepted (h, SMALL_CAPS ", multiview-mode=side-by-side"));
+  fail_if (is_accepted (h, SMALL_CAPS ", multiview-mode=frame-by-frame"));
+  fail_if (is_accepted (h,
+          "video/x-raw(memory:GLMemory), format=RGBA, width=64, height=48, "
+          "framerate=25/1"));
   fail_if (is_accepted (h,
           "video/x-raw(memory:DMABuf), format=I420, width=64, height=48, "
           "framerate=25/1"));
@@ -101,6 +108,27 @@ GST_START_TEST (only_progressive_mono_linear_video_of_usable_size_is_taken)
 
 GST_END_TEST;
 
+GST_START_TEST (no_memory_but_the_systems_is_offered)
+{
+  GstHarness *h = stab_harness_new (NULL, "window", WINDOW, NULL);
+  GList *item = gst_element_class_get_pad_template_list
+      (GST_ELEMENT_GET_CLASS (h->element));
+  guint i;
+
+  fail_unless_equals_int (g_list_length (item), 2);
+  for (; item; item = item->next) {
+    GstCaps *caps = gst_pad_template_get_caps (item->data);
+
+    for (i = 0; i < gst_caps_get_size (caps); i++)
+      fail_unless (gst_caps_features_is_equal (gst_caps_get_features (caps, i),
+              GST_CAPS_FEATURES_MEMORY_SYSTEM_MEMORY));
+    gst_caps_unref (caps);
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 static const gchar *kept[] = {
   SMALL_CAPS,
   SMALL_CAPS ", interlace-mode=progressive, multiview-mode=mono, "
@@ -110,6 +138,10 @@ static const gchar *kept[] = {
       "34000:16000:13250:34500:7500:3000:15635:16450:10000000:500",
   "video/x-raw, format=NV12, width=64, height=48, framerate=0/1, "
       "max-framerate=60/1, chroma-site=cosited",
+  "video/x-raw, format=P010_10LE, width=63, height=47, framerate=60000/1001, "
+      "colorimetry=bt2100-pq, chroma-site=cosited, pixel-aspect-ratio=4/3, "
+      "mastering-display-info=(string)35400:14600:8500:39850:6550:2300:15635:"
+      "16450:10000000:50, content-light-level=(string)1000:400",
   "video/x-raw, format=NV12, width=64, height=48, framerate=120000/1"
 };
 
@@ -231,6 +263,7 @@ caps_suite (void)
   tcase_add_test (tc, a_very_wide_frame_is_taken);
   tcase_add_test (tc,
       only_progressive_mono_linear_video_of_usable_size_is_taken);
+  tcase_add_test (tc, no_memory_but_the_systems_is_offered);
   tcase_add_loop_test (tc, all_fields_of_the_caps_are_kept, 0,
       G_N_ELEMENTS (kept));
   tcase_add_loop_test (tc,

@@ -240,7 +240,9 @@ static bool planes_given(const L1L2Stab *s, const L1L2StabFrame *frame)
 
 L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
 {
-    if (!s || !in || !(in->motion ? l1l2_frame_has_motion(in, s->cfg.motion_model, &s->cfg.logger) : planes_given(s, in)))
+    if (!s || !in)
+        return L1L2STAB_ERR_ARGUMENT;
+    if (!(in->motion ? l1l2_frame_has_motion(in, s->cfg.motion_model, &s->cfg.logger) : planes_given(s, in)))
         return L1L2STAB_ERR_ARGUMENT;
     if (s->finished)
         return L1L2STAB_ERR_STATE;

@@ -34,7 +34,7 @@ gst_l1l2_stab_input_frame (GstL1L2StabOutput * output,
   }
   ret = gst_l1l2_stab_stream_push (&output->stream, frame, now, time);
   if (ret == GST_FLOW_OK)
-    ret = gst_l1l2_stab_output_hurry (output, now, pts);
+    ret = gst_l1l2_stab_output_hurry (output, GST_CLOCK_TIME_NONE, pts);
   return ret;
 }
 
@@ -54,7 +54,7 @@ add_gap (GstL1L2StabOutput * output, GstEvent * gap)
   if (output->trans->segment.rate > 0)
     position += duration;
   gst_l1l2_stab_stream_add_event (&output->stream, gap);
-  if (gst_l1l2_stab_output_hurry (output, gst_l1l2_stab_output_now (output),
+  if (gst_l1l2_stab_output_hurry (output, GST_CLOCK_TIME_NONE,
           position) == GST_FLOW_OK)
     gst_l1l2_stab_output_push_ready (output);
   return TRUE;

@@ -71,12 +71,14 @@ gst_l1l2_stab_latency_query (GstL1L2StabLatency * latency, GstPad * sink_pad,
 }
 
 GstClockTime
-gst_l1l2_stab_latency_limit (GstL1L2StabLatency * latency)
+gst_l1l2_stab_latency_limit (GstL1L2StabLatency * latency, GstClockTime * grace)
 {
   GstClockTime limit;
 
   GST_OBJECT_LOCK (latency->element);
   limit = latency->limit;
+  if (grace)
+    *grace = latency->latency - latency->limit;
   GST_OBJECT_UNLOCK (latency->element);
   return limit;
 }

@@ -29,8 +29,9 @@ void gst_l1l2_stab_latency_set (GstL1L2StabLatency * latency, gint window,
 gboolean gst_l1l2_stab_latency_query (GstL1L2StabLatency * latency,
     GstPad * sink_pad, GstQuery * query);
 
-/* How long a frame may be held, so that it leaves within the latency. */
-GstClockTime gst_l1l2_stab_latency_limit (GstL1L2StabLatency * latency);
+/* How long a frame may be held, so that it leaves within the latency; *grace, which may be NULL: what is left then. */
+GstClockTime gst_l1l2_stab_latency_limit (GstL1L2StabLatency * latency,
+    GstClockTime * grace);
 
 /* Is the source live? Upstream is asked where it has not been. */
 gboolean gst_l1l2_stab_latency_is_live (GstL1L2StabLatency * latency,

@@ -11,16 +11,35 @@ set_position (GstL1L2StabOutput * output, GstClockTime position)
   GST_OBJECT_UNLOCK (output->trans);
 }
 
+/* The running time at which the oldest frame has to leave though no other has come in. While a push was blocked, others
+ * could not come: they have a moment to do so, after which what the sink waited for is still in time. */
+static GstClockTime
+due_time (GstL1L2StabOutput * output)
+{
+  GstClockTime limit, grace, due;
+
+  limit = gst_l1l2_stab_latency_limit (&output->latency, &grace);
+  due = gst_l1l2_stab_stream_due_time (&output->stream, limit);
+  if (GST_CLOCK_TIME_IS_VALID (due) && GST_CLOCK_TIME_IS_VALID (output->ready))
+    due = MAX (due, output->ready + grace);
+  return due;
+}
+
 /* From the timer's task. A flow return that is not OK will be met again by the next frame that comes in. */
 static void
 expire (gpointer user_data)
 {
   GstL1L2StabOutput *output = user_data;
   GstPad *sink_pad = GST_BASE_TRANSFORM_SINK_PAD (output->trans);
+  GstClockTime now, due;
 
   GST_PAD_STREAM_LOCK (sink_pad);
-  if (gst_l1l2_stab_output_hurry (output,
-          gst_l1l2_stab_timer_now (&output->timer), GST_CLOCK_TIME_NONE)
+  now = gst_l1l2_stab_timer_now (&output->timer);
+  due = due_time (output);
+  if (!GST_CLOCK_TIME_IS_VALID (now) || !GST_CLOCK_TIME_IS_VALID (due)
+      || now < due)
+    gst_l1l2_stab_timer_set (&output->timer, due);
+  else if (gst_l1l2_stab_output_hurry (output, now, GST_CLOCK_TIME_NONE)
       == GST_FLOW_OK)
     gst_l1l2_stab_output_push_ready (output);
   GST_PAD_STREAM_UNLOCK (sink_pad);
@@ -35,7 +54,7 @@ gst_l1l2_stab_output_init (GstL1L2StabOutput * output, GstBaseTransform * trans)
   gst_l1l2_stab_latency_init (&output->latency, element);
   gst_l1l2_stab_timer_init (&output->timer, element, expire, output);
   gst_l1l2_stab_stream_init (&output->stream, element);
-  output->position = GST_CLOCK_TIME_NONE;
+  output->position = output->ready = GST_CLOCK_TIME_NONE;
 }
 
 void
@@ -68,7 +87,7 @@ gst_l1l2_stab_output_hurry (GstL1L2StabOutput * output, GstClockTime now,
     GstClockTime position)
 {
   return gst_l1l2_stab_stream_hurry (&output->stream,
-      gst_l1l2_stab_latency_limit (&output->latency), now, position);
+      gst_l1l2_stab_latency_limit (&output->latency, NULL), now, position);
 }
 
 static void
@@ -131,9 +150,9 @@ gst_l1l2_stab_output_push_ready (GstL1L2StabOutput * output)
     }
   } while (ret == GST_FLOW_OK && buffer);
 
+  output->ready = gst_l1l2_stab_timer_now (&output->timer);
   if (ret == GST_FLOW_OK)
-    due = gst_l1l2_stab_stream_due_time (&output->stream,
-        gst_l1l2_stab_latency_limit (&output->latency));
+    due = due_time (output);
   gst_l1l2_stab_timer_set (&output->timer, due);
   return ret;
 }

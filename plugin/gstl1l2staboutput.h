@@ -19,6 +19,7 @@ typedef struct
   GstL1L2StabLatency latency;   /* locks by itself */
   GstL1L2StabTimer timer;       /* so does this */
   GstL1L2StabStream stream;     /* under the sink pad's stream lock */
+  GstClockTime ready;           /* running time when the last push was over; under the stream lock, too */
   GstClockTime position;        /* after the last frame out, in its segment; under the object lock; NONE: none yet */
 } GstL1L2StabOutput;
 

@@ -163,6 +163,36 @@ GST_START_TEST (a_live_source_in_time_is_never_hurried)
 
 GST_END_TEST;
 
+static GstPadProbeReturn
+take_three_durations (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
+{
+  GstHarness *h = user_data;
+
+  gst_harness_set_time (h, clock_time (h) + 3 * FRAME_DURATION);
+  return GST_PAD_PROBE_OK;
+}
+
+/* The source waits meanwhile; its frames are there as soon as the sink has taken one. */
+GST_START_TEST (a_sink_that_blocks_hurries_no_frame)
+{
+  GstHarness *h = live_harness_new ();
+  guint i;
+
+  gst_pad_add_probe (h->sinkpad, GST_PAD_PROBE_TYPE_BUFFER,
+      take_three_durations, h, NULL);
+  for (i = 0; i < WINDOW; i++)
+    push_live (h, i * FRAME_DURATION);
+  for (; i < 3 * WINDOW; i++) {
+    fail_unless_equals_int (gst_harness_buffers_in_queue (h), 1);
+    gst_buffer_unref (gst_harness_pull (h));
+    fail_unless_equals_int (gst_harness_push (h, frame_at (h,
+                i * FRAME_DURATION, FRAME_DURATION)), GST_FLOW_OK);
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 static const guint windows[] = { 4, 30, 150 };
 
 GST_START_TEST (a_live_frames_delay_is_the_reported_latency_within_a_frame)
@@ -342,6 +372,7 @@ time_suite (void)
   tcase_add_test (tc, a_live_source_at_half_its_rate_is_in_time);
   tcase_add_test (tc, a_live_source_with_a_gap_of_three_seconds_is_in_time);
   tcase_add_test (tc, a_live_source_in_time_is_never_hurried);
+  tcase_add_test (tc, a_sink_that_blocks_hurries_no_frame);
   tcase_add_loop_test (tc,
       a_live_frames_delay_is_the_reported_latency_within_a_frame, 0,
       G_N_ELEMENTS (windows));

@@ -9,9 +9,9 @@ top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$(realpath -m "${1:-$top/build}")
 overlay=$top/subprojects/packagefiles/osqp/meson.build
 
-# Megabytes that have to be free: on a bare Debian some 470 packages, of which apt keeps the archives; and the build.
-packages_need=1500
-archives_need=400
+# Megabytes that have to be free: on a bare Debian some 540 packages, of which apt keeps the archives; and the build.
+packages_need=1700
+archives_need=450
 build_need=100
 
 say() { echo "prepare: $*" >&2; }

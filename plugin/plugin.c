@@ -19,8 +19,10 @@
  * from then on; the crop moves by at most 0.005 a frame. #l1l2stab:bypass
  * applies to the frames that go out, at once but softly. The other properties
  * take effect with the next caps, or when the element is started again; so does
- * the size that crop-ratio gives with output-size=crop. Interlaced video has to
- * be deinterlaced first.
+ * the size that crop-ratio gives with output-size=crop.
+ *
+ * Interlaced video has to be deinterlaced first, and frames in the memory of a
+ * GPU have to be downloaded.
  *
  * Every frame carries a custom meta "GstL1L2StabMeta" with the maps from its
  * picture to the source frame ("to-source") and back ("from-source"), in pixels
@@ -42,6 +44,20 @@
  * |[
  * gst-launch-1.0 v4l2src ! videoconvert ! l1l2stab window=30 ! videoconvert ! autovideosink
  * ]| A camera, with a delay of one second at 30 frames a second.
+ * |[
+ * gst-launch-1.0 rtspsrc location=rtsp://camera/stream latency=200 ! decodebin ! l1l2stab window=30 ! \
+ *   videoconvert ! autovideosink
+ * ]| A camera of the network.
+ * |[
+ * gst-launch-1.0 filesrc location=in.mp4 ! decodebin ! tee name=in \
+ *   compositor name=both sink_1::xpos=320 ! x264enc ! mp4mux ! filesink location=out.mp4 \
+ *   in. ! queue max-size-time=0 max-size-bytes=0 max-size-buffers=0 ! both.sink_0 \
+ *   in. ! queue ! l1l2stab ! both.sink_1
+ * ]| Before and after, side by side, for a picture that is 320 pixels wide.
+ * |[
+ * gst-launch-1.0 filesrc location=in-10bit.mp4 ! decodebin ! l1l2stab ! x265enc ! h265parse ! mp4mux ! \
+ *   filesink location=out.mp4
+ * ]| Ten bits stay ten bits, all the way.
  */
 #include "gstl1l2stab.h"
 

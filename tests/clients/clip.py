@@ -35,8 +35,8 @@ FLASH_FRAMES = 2
 RATE, BEEP_HZ, BEEP_SECONDS = 48000, 1000, 0.1
 FRAME = Gst.SECOND / FPS
 
-# Nothing here takes a minute: what does is stuck.
-WATCHDOG_SECONDS = 60
+# Half a minute is enough for each of these programs: what takes this long is stuck.
+WATCHDOG_SECONDS = 100
 
 WALL_WIDTH, WALL_HEIGHT = WIDTH + 2 * SHAKE, HEIGHT + 2 * SHAKE
 LIGHT, DARK, WHITE, BLACK = 200, 40, 235, 16

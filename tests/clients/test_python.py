@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Python bindings: properties, controllers and messages, as an application in Python uses them."""
+"""Python bindings: properties, controllers and messages, told by the pictures that come out."""
 import sys
 import unittest
 
@@ -11,7 +11,7 @@ clip.begin()
 try:
     import gi
     gi.require_version('GstController', '1.0')
-    from gi.repository import GObject, GstController
+    from gi.repository import GstController
 except (ImportError, ValueError) as reason:
     print('skipped:', reason)
     sys.exit(clip.SKIPPED)
@@ -37,16 +37,6 @@ def magnification(sample):
 class Properties(unittest.TestCase):
     def setUp(self):
         self.stabilizer = Gst.ElementFactory.make('l1l2stab')
-
-    def test_each_property_has_a_default_in_its_range_and_says_its_effect(self):
-        own = [spec for spec in self.stabilizer.list_properties() if spec.owner_type.name == 'GstL1L2Stab']
-        self.assertLessEqual({'lambda', 'crop-ratio', 'window', 'overlap', 'join', 'interpolation', 'output-size',
-                              'threads'}, {spec.name for spec in own})
-        for spec in own:
-            self.assertGreater(len(spec.blurb), 20, spec.name)
-            if spec.flags & GObject.ParamFlags.READABLE and hasattr(spec, 'minimum'):
-                self.assertEqual(self.stabilizer.get_property(spec.name), spec.default_value)
-                self.assertTrue(spec.minimum <= spec.default_value <= spec.maximum, spec.name)
 
     def test_values_are_kept_and_names_of_choices_understood(self):
         for name, value in ('lambda', 2.0), ('crop-ratio', 0.75), ('window', 40), ('overlap', 12), ('threads', 1):

@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Every launch line of the documentation does what is said of it: test_documented_lines.py TOP
+
+The files that the lines read are there, and those that they write are looked at. A test source stands for each camera
+and microphone, a test sink for each screen.
+"""
+import re
+import sys
+import threading
+import unittest
+from pathlib import Path
+
+import clip
+from clip import FPS, FRAME
+
+clip.begin('gst-launch-1.0', 'ges-launch-1.0', 'gst-inspect-1.0', elements=(
+    'avenc_aac', 'compositor', 'deinterlace', 'fakevideosink', 'rtspsrc', 'x265enc'))
+try:
+    import gi
+    gi.require_version('GstRtspServer', '1.0')
+    from gi.repository import GLib, GstRtspServer
+except (ImportError, ValueError) as reason:
+    print('skipped:', reason)
+    sys.exit(clip.SKIPPED)
+
+TOP = Path(sys.argv.pop(1))
+PLACES = ['README.md', 'docs/element.md', 'docs/control.md', 'docs/motion-file.md', 'plugin/plugin.c']
+FRAMES = 75
+LIVE_FRAMES = 45
+folder = clip.folder()
+film = clip.make(folder / 'in.mp4', FRAMES, audio=True)
+clip.play(f'filesrc location={film} ! decodebin ! videoconvert ! video/x-raw,format=I420_10LE ! '
+          f'x265enc speed-preset=ultrafast ! h265parse ! mp4mux ! filesink location={folder}/in-10bit.mp4')
+
+
+def serve_film():
+    """The film as an RTSP camera's. Its address."""
+    server = GstRtspServer.RTSPServer()
+    server.set_address('127.0.0.1')
+    server.set_service('0')
+    factory = GstRtspServer.RTSPMediaFactory()
+    factory.set_launch(f'( filesrc location={film} ! qtdemux ! h264parse ! rtph264pay name=pay0 )')
+    server.get_mount_points().add_factory('/stream', factory)
+    server.attach(None)
+    threading.Thread(target=GLib.MainLoop().run, daemon=True).start()
+    return f'rtsp://127.0.0.1:{server.get_bound_port()}/stream'
+
+
+STAND_INS = {
+    'v4l2src': f'videotestsrc is-live=true num-buffers={LIVE_FRAMES} ! video/x-raw,width=320,height=240',
+    'pulsesrc': 'audiotestsrc is-live=true num-buffers=65',
+    'autovideosink': 'identity eos-after=15 ! fakevideosink',
+    'rtspsrc': 'rtspsrc protocols=tcp', # no packet gets lost; nor does the server tell the end
+    'rtsp://camera/stream': serve_film(),
+}
+
+
+def launch_lines(path):
+    """The lines of a text's examples, those that a backslash continues put together."""
+    text = re.sub(r' *\\\n[ *]*', ' ', path.read_text(encoding='utf-8'))
+    return re.findall(r'^(?:    | \* )((?:gst|ges)-launch-1\.0 .*)$', text, re.MULTILINE)
+
+
+def frames_of_ges(path):
+    """It enlarges all pictures to 1280x720, with borders."""
+    return clip.frames_of(f'filesrc location={path} ! decodebin ! videoconvert ! videocrop left=160 right=160 ! '
+                          f'videoscale ! video/x-raw,width={clip.WIDTH},height={clip.HEIGHT}')
+
+
+def numbers_side_by_side(path):
+    """Of the left and the right half of each frame."""
+    halves = []
+    for x in 0, clip.WIDTH:
+        frames = clip.frames_of(f'filesrc location={path} ! decodebin ! videoconvert ! '
+                                f'videocrop left={x} right={clip.WIDTH - x}')
+        halves.append([frame.number for frame in frames])
+    return halves
+
+
+class Documented(unittest.TestCase):
+    def check_file(self, line, out):
+        if 'compositor' in line:
+            self.assertEqual(numbers_side_by_side(out), [[*range(FRAMES)]] * 2)
+            return
+        frames = frames_of_ges(out) if line.startswith('ges') else clip.frames_of(out)
+        if 'v4l2src' in line:
+            self.assertEqual(len(frames), LIVE_FRAMES)
+        else:
+            self.assertEqual([f.number for f in frames],
+                             [*range(15, 45)] if line.startswith('ges') else [*range(FRAMES)])
+            for i, frame in enumerate(frames):
+                self.assertAlmostEqual(frame.time / FRAME, i, delta=0.05)
+        if 'avenc_aac' in line:
+            self.assertGreater(len(clip.samples_of(out)[1]), len(frames) * clip.RATE // FPS)
+        if '10bit' in line:
+            found = clip.run('gst-discoverer-1.0', '-v', out)
+            self.assertIn('bit-depth-luma=(uint)10', found)
+
+    def check_line(self, line):
+        command = line
+        for real, stand_in in STAND_INS.items():
+            command = command.replace(real, stand_in)
+        out = folder / 'out.mp4'
+        out.unlink(missing_ok=True)
+        said = clip.run('bash', '-c', f'cd {folder} && {command}')
+        self.assertNotRegex(said, r'WARN|Impossible|missing')
+        if out.name in line:
+            self.check_file(line, out)
+
+
+def add_tests(place):
+    for i, line in enumerate(launch_lines(TOP / place), 1):
+        name = re.sub(r'\W', '_', place)
+        setattr(Documented, f'test_line_{i}_of_{name}_does_what_is_said', lambda self, line=line: self.check_line(line))
+
+
+for place in PLACES:
+    if (TOP / place).exists():
+        add_tests(place)
+
+if __name__ == '__main__':
+    unittest.main(verbosity=2)

@@ -19,12 +19,12 @@ gst_l1l2_stab_input_frame (GstL1L2StabOutput * output,
   const GstClockTime pts = GST_BUFFER_PTS (frame);
   const GstClockTime time =
       gst_l1l2_stab_glue_stream_time (&output->trans->segment, frame);
-  GstFlowReturn ret;
+  GstFlowReturn ret = gst_l1l2_stab_output_take_flow (output);
 
   /* A frame that could not be pushed before, for want of a buffer, goes first in any case. */
-  if (GST_BUFFER_IS_DISCONT (frame))
+  if (ret == GST_FLOW_OK && GST_BUFFER_IS_DISCONT (frame))
     ret = gst_l1l2_stab_output_drain (output);
-  else
+  else if (ret == GST_FLOW_OK)
     ret = gst_l1l2_stab_output_push_ready (output);
   if (ret == GST_FLOW_OK)
     ret = apply_live_settings (output, settings, time);

@@ -25,7 +25,7 @@ due_time (GstL1L2StabOutput * output)
   return due;
 }
 
-/* From the timer's task. A flow return that is not OK will be met again by the next frame that comes in. */
+/* From the timer's task. The next frame that comes in takes a flow return that is not OK upstream. */
 static void
 expire (gpointer user_data)
 {
@@ -37,12 +37,24 @@ expire (gpointer user_data)
   now = gst_l1l2_stab_timer_now (&output->timer);
   due = due_time (output);
   if (!GST_CLOCK_TIME_IS_VALID (now) || !GST_CLOCK_TIME_IS_VALID (due)
-      || now < due)
+      || now < due) {
     gst_l1l2_stab_timer_set (&output->timer, due);
-  else if (gst_l1l2_stab_output_hurry (output, now, GST_CLOCK_TIME_NONE)
-      == GST_FLOW_OK)
-    gst_l1l2_stab_output_push_ready (output);
+  } else {
+    output->flow = gst_l1l2_stab_output_hurry (output, now,
+        GST_CLOCK_TIME_NONE);
+    if (output->flow == GST_FLOW_OK)
+      output->flow = gst_l1l2_stab_output_push_ready (output);
+  }
   GST_PAD_STREAM_UNLOCK (sink_pad);
+}
+
+GstFlowReturn
+gst_l1l2_stab_output_take_flow (GstL1L2StabOutput * output)
+{
+  const GstFlowReturn flow = output->flow;
+
+  output->flow = GST_FLOW_OK;
+  return flow;
 }
 
 void
@@ -54,6 +66,7 @@ gst_l1l2_stab_output_init (GstL1L2StabOutput * output, GstBaseTransform * trans)
   gst_l1l2_stab_latency_init (&output->latency, element);
   gst_l1l2_stab_timer_init (&output->timer, element, expire, output);
   gst_l1l2_stab_stream_init (&output->stream, element);
+  output->flow = GST_FLOW_OK;
   output->position = output->ready = GST_CLOCK_TIME_NONE;
 }
 
@@ -68,6 +81,7 @@ void
 gst_l1l2_stab_output_stop (GstL1L2StabOutput * output)
 {
   gst_l1l2_stab_timer_stop (&output->timer);
+  output->flow = GST_FLOW_OK;
   gst_l1l2_stab_stream_close (&output->stream);
   gst_l1l2_stab_motion_close (&output->stream.files);
   set_position (output, GST_CLOCK_TIME_NONE);
@@ -179,6 +193,7 @@ gst_l1l2_stab_output_flush (GstL1L2StabOutput * output)
 {
   GstEvent *event;
 
+  output->flow = GST_FLOW_OK;
   gst_l1l2_stab_stream_reset (&output->stream);
   gst_l1l2_stab_motion_flush (&output->stream.files);
   set_position (output, GST_CLOCK_TIME_NONE);

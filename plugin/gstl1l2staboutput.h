@@ -20,6 +20,7 @@ typedef struct
   GstL1L2StabTimer timer;       /* so does this */
   GstL1L2StabStream stream;     /* under the sink pad's stream lock */
   GstClockTime ready;           /* running time when the last push was over; under the stream lock, too */
+  GstFlowReturn flow;           /* what the timer's last push met; under the same lock */
   GstClockTime position;        /* after the last frame out, in its segment; under the object lock; NONE: none yet */
 } GstL1L2StabOutput;
 
@@ -37,6 +38,9 @@ GstClockTime gst_l1l2_stab_output_now (GstL1L2StabOutput * output);
  * above. */
 GstFlowReturn gst_l1l2_stab_output_hurry (GstL1L2StabOutput * output,
     GstClockTime now, GstClockTime position);
+
+/* What the timer's last push met, once: upstream has to know of it. */
+GstFlowReturn gst_l1l2_stab_output_take_flow (GstL1L2StabOutput * output);
 
 /* Pushes the frames that are ready, and the events whose turn it is. What is held then waits for other frames, but no
  * longer than the latency allows. */

@@ -26,7 +26,7 @@ except (ImportError, ValueError) as reason:
 
 TOP = Path(sys.argv.pop(1))
 PLACES = ['README.md', 'docs/element.md', 'docs/control.md', 'docs/motion-file.md', 'plugin/plugin.c']
-FRAMES = 75
+FRAMES = 50
 LIVE_FRAMES = 45
 folder = clip.folder()
 film = clip.make(folder / 'in.mp4', FRAMES, audio=True)

@@ -278,6 +278,40 @@ GST_START_TEST (a_flush_leaves_the_clock_nothing_to_let_go)
 
 GST_END_TEST;
 
+static GstPadProbeReturn
+end_once (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
+{
+  gint *n_ended = user_data;
+
+  if (g_atomic_int_get (n_ended) > 0)
+    return GST_PAD_PROBE_OK;
+  gst_buffer_unref (GST_PAD_PROBE_INFO_BUFFER (info));
+  GST_PAD_PROBE_INFO_FLOW_RETURN (info) = GST_FLOW_EOS;
+  g_atomic_int_inc (n_ended);
+  return GST_PAD_PROBE_HANDLED;
+}
+
+GST_START_TEST (what_the_clock_met_downstream_goes_upstream_with_the_next_frame)
+{
+  GstHarness *h = live_harness_new ();
+  GstPad *pad = gst_element_get_static_pad (h->element, "src");
+  gint n_ended = 0;
+
+  gst_pad_add_probe (pad, GST_PAD_PROBE_TYPE_BUFFER, end_once, &n_ended, NULL);
+  push_live (h, 0);
+  crank_to (h, LIMIT);
+  while (g_atomic_int_get (&n_ended) == 0)
+    g_usleep (1000);
+  fail_unless_equals_int (gst_harness_push (h, frame_at (h, LATENCY,
+              FRAME_DURATION)), GST_FLOW_EOS);
+  fail_unless_equals_int (gst_harness_push (h, frame_at (h, LATENCY,
+              FRAME_DURATION)), GST_FLOW_OK);
+  gst_object_unref (pad);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (stopping_ends_the_wait)
 {
   GstHarness *h = live_harness_new ();
@@ -379,6 +413,8 @@ time_suite (void)
   tcase_add_test (tc, what_waits_for_a_frame_leaves_with_it);
   tcase_add_test (tc, in_a_pause_no_time_goes_by);
   tcase_add_test (tc, a_flush_leaves_the_clock_nothing_to_let_go);
+  tcase_add_test (tc,
+      what_the_clock_met_downstream_goes_upstream_with_the_next_frame);
   tcase_add_test (tc, stopping_ends_the_wait);
   tcase_add_test (tc, the_clock_pushes_nothing_of_a_source_that_is_not_live);
   tcase_add_loop_test (tc,

@@ -11,6 +11,11 @@
  * frames. After them, one frame comes out for each frame that comes in, with
  * its timestamps, flags and metas.
  *
+ * The latency is kept, too: where the source is slower than its caps say, or
+ * stalls, frames leave when they have been held for as long as a window lasts at
+ * the rate of the caps (25 frames a second where they have none), with what
+ * look-ahead there is. Key frames alone (trick modes) are not held at all.
+ *
  * The method is that of Qu and Song, "Video stabilization with L1-L2
  * optimization", ICIP 2013.
  *

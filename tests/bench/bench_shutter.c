@@ -6,11 +6,15 @@
  *   wobble  where the scene lies in two successive outputs, less the smooth path's step: rms over the picture, px
  *   skew    where the scene lies in an output, less the nearest similarity: the rows' own error, rms, px
  *
- * usage: bench_shutter [FRAMES [AMPLITUDE_PX]]
+ * Then clips with a global shutter, in which something that moves by itself covers 40 % of the picture: bend is how far
+ * that moves a sample from where B_t has it, px.
+ *
+ * usage: bench_shutter [FRAMES [AMPLITUDE_PX [PICTURE]]]     PICTURE: a PPM of the last clip, with its mesh
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "motion.h"
 #include "path.h"
@@ -24,7 +28,11 @@ typedef struct Errors {
     double wobble, skew; /* sums of squares */
     int wobbles, skews;
     double readout;
+    double bend;         /* longest, px */
 } Errors;
+
+static const char *picture_path; /* where to draw frame `PICTURE_FRAME` of the run at hand, if anywhere */
+enum { PICTURE_FRAME = 60 };
 
 static L1L2Mat from_px(const double m[9])
 {
@@ -101,6 +109,45 @@ static void compare(const Synth *synth, int t, const L1L2PathFrame *f, const L1L
     add_skew(at, errors);
 }
 
+static void draw(const SynthPicture *source, const L1L2WarpMesh *mesh)
+{
+    FILE *file = fopen(picture_path, "wb");
+    uint8_t(*rgb)[3] = calloc(WIDTH * HEIGHT, sizeof *rgb);
+    if (!file || !rgb)
+        exit(EXIT_FAILURE);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        rgb[i][0] = rgb[i][1] = rgb[i][2] = (uint8_t)(source->data[0][i / WIDTH * source->stride[0] + i % WIDTH] / 2);
+    for (int i = 0; i < 20000 * 10; i++) {
+        /* Ten lines each way, in fine steps. */
+        const double along = (i % 10000 / 10000.0 - 0.5), across = i / 10000 % 10 / 9.0 - 0.5;
+        const L1L2Point u = i < 100000 ? (L1L2Point){along * WIDTH, across * HEIGHT}
+                                       : (L1L2Point){across * WIDTH, along * HEIGHT};
+        const L1L2Point at = look_up(mesh, u);
+        const int x = (int)floor(at.x + 0.5 * WIDTH), y = (int)floor(at.y + 0.5 * HEIGHT);
+        if (x >= 0 && x < WIDTH && y >= 0 && y < HEIGHT)
+            rgb[y * WIDTH + x][0] = rgb[y * WIDTH + x][1] = 255;
+    }
+    fprintf(file, "P6 %d %d 255\n", WIDTH, HEIGHT);
+    fwrite(rgb, sizeof *rgb, WIDTH * HEIGHT, file);
+    fclose(file);
+    free(rgb);
+}
+
+/* The next frame's map as a mesh. */
+static void take(L1L2Wobble *wobble, const L1L2PathFrame *f, L1L2WarpMesh *mesh, Errors *errors)
+{
+    const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f->B, hypot(WIDTH, HEIGHT)),
+                                     l1l2_mat_diagonal(crop_ratio, crop_ratio));
+    double reach;
+    l1l2_wobble_pull(wobble);
+    const L1L2WarpMesh *bent = l1l2_wobble_bend(wobble, &map, 1.0, &reach);
+    if (bent)
+        memcpy(mesh->node, bent->node, (size_t)(bent->columns * bent->rows) * sizeof *bent->node);
+    else
+        l1l2_warp_mesh_set(mesh, &map);
+    errors->bend = fmax(errors->bend, reach);
+}
+
 static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter model)
 {
     const L1L2StabLogger log = {0};
@@ -138,18 +185,12 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
             l1l2_path_finish(path);
         }
         for (L1L2PathFrame f; l1l2_path_pull(path, &f); out++) {
-            const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f.B, hypot(WIDTH, HEIGHT)),
-                                             l1l2_mat_diagonal(crop_ratio, crop_ratio));
-            double reach;
-            l1l2_wobble_pull(wobble);
-            const L1L2WarpMesh *bent = l1l2_wobble_bend(wobble, &map, 1.0, &reach);
-            L1L2WarpMesh *now = &mesh[out % 2];
-            if (bent)
-                for (int i = 0; i < bent->columns * bent->rows; i++)
-                    now->node[i] = bent->node[i];
-            else
-                l1l2_warp_mesh_set(now, &map);
-            compare(synth, out, &f, &mesh[(out + 1) % 2], now, &errors);
+            take(wobble, &f, &mesh[out % 2], &errors);
+            compare(synth, out, &f, &mesh[(out + 1) % 2], &mesh[out % 2], &errors);
+            if (picture_path && out == PICTURE_FRAME) {
+                synth_render_gray(synth, out, picture.data[0], picture.stride[0]);
+                draw(&picture, &mesh[out % 2]);
+            }
         }
     }
     errors.readout = l1l2_wobble_readout(wobble);
@@ -161,6 +202,26 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
     synth_picture_free(&picture);
     synth_free(synth);
     return errors;
+}
+
+static void run_movers(int frames)
+{
+    static const double speeds[] = {2, 5, 15};
+    printf("\n40 %% of the picture moves by itself; wobble / bend, px\n");
+    printf("px/frame    none            homography      mixture\n");
+    for (int v = 0; v < 3; v++) {
+        SynthConfig scene = synth_defaults();
+        scene.width = WIDTH, scene.height = HEIGHT;
+        scene.noise = 2.0;
+        scene.foreground = 0.4, scene.movers = 1, scene.mover_speed = speeds[v];
+        printf("%6.0f  ", speeds[v]);
+        for (int model = 0; model < 3; model++) {
+            const Errors e = run(&scene, frames, (L1L2StabRollingShutter)model);
+            printf("  %6.3f / %-6.3f", sqrt(e.wobble / e.wobbles), e.bend);
+        }
+        printf("\n");
+        fflush(stdout);
+    }
 }
 
 int main(int argc, char **argv)
@@ -187,5 +248,7 @@ int main(int argc, char **argv)
             printf("  %5.1f\n", found * 1000.0 / scene.fps);
             fflush(stdout);
         }
+    picture_path = argc > 3 ? argv[3] : NULL;
+    run_movers(frames);
     return EXIT_SUCCESS;
 }

@@ -35,7 +35,7 @@ struct L1L2Motion {
     int age[MAX_POINTS];    /* frames that a point has moved with the camera */
     L1L2Pair pair[MAX_POINTS];
     double votes[MAX_POINTS], weights[MAX_POINTS];
-    bool ok[MAX_POINTS], inlier[MAX_POINTS];
+    bool ok[MAX_POINTS], inlier[MAX_POINTS], core[MAX_POINTS];
     int points;             /* in `point`, in the current picture */
     int since_selection;    /* frames */
     L1L2Votes voters;
@@ -43,7 +43,7 @@ struct L1L2Motion {
     L1L2Overlay overlay;
     L1L2Dissolve dissolve;
     L1L2Thumbnail thumbnail;  /* of the current picture */
-    L1L2Thumbnail last_shown; /* of the last picture whose motion was measured, or with which a path started */
+    L1L2Shot shot;
 };
 
 L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
@@ -92,7 +92,7 @@ static void start_path(L1L2Motion *m)
 {
     m->points = 0;
     m->since_selection = RESELECT_FRAMES;
-    m->last_shown = m->thumbnail;
+    l1l2_shot_start(&m->shot, &m->thumbnail);
     l1l2_votes_reset(&m->voters);
     l1l2_ladder_reset(&m->ladder);
     l1l2_dissolve_start(&m->dissolve, &m->thumbnail);
@@ -162,16 +162,15 @@ static L1L2StabResult track(L1L2Motion *m)
  * an object that covers a third of the frame would now and then be taken for the background. */
 static void learn(L1L2Motion *m, const L1L2Mat *F)
 {
-    l1l2_votes_learn(&m->voters, m->pair, m->inlier, m->points);
+    l1l2_votes_learn(&m->voters, m->pair, m->core, m->points);
     l1l2_overlay_learn(&m->overlay, m->pair, m->inlier, m->points, F);
     int kept = 0;
     for (int i = 0; i < m->points; i++) {
-        m->age[i]++;
+        m->age[i] = m->core[i] ? m->age[i] + 1 : 0;
         if (m->inlier[i])
             keep(m, i, &kept);
     }
     m->points = kept;
-    m->last_shown = m->thumbnail;
 }
 
 static void start_shot(L1L2Motion *m, L1L2MotionResult *out, const char *how)
@@ -218,12 +217,10 @@ static void fit(L1L2Motion *m, L1L2MotionResult *out)
     l1l2_votes_cast(&m->voters, m->pair, m->age, count, m->votes, m->weights);
     const L1L2Say say = {m->votes, m->weights};
     L1L2Rung rung = l1l2_ladder_measure(&m->ladder, &m->voters, m->pair, say, count, m->since_selection == 1, &m->rng,
-                                        m->inlier);
+                                        m->inlier, m->core);
     fit_residual(m, &rung, out);
     const bool measured = rung.model != L1L2STAB_MODEL_NONE;
-    /* Nothing could be measured: is it because another shot begins? A picture that shows nothing is none; what comes
-     * after it is compared with the one before. */
-    if (!measured && l1l2_thumbnails_differ(&m->last_shown, &m->thumbnail)) {
+    if (l1l2_shot_push(&m->shot, &m->thumbnail, measured)) {
         start_shot(m, out, "a cut");
         return;
     }

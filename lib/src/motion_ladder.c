@@ -2,6 +2,7 @@
 #include "motion_ladder.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "motion_rows.h"
 #include "ransac_fit.h"
@@ -16,6 +17,8 @@ static const double wider = 2.0, min_share_fallback = 0.5;
 static const double max_spread = 0.5; /* rms of the inliers' residuals, of the threshold; evenly filled it is 0.71 */
 /* Where fewer agree, rows may have moved differently. */
 static const double most_agree = 0.7;
+/* The inner threshold, of the outer one, and the part of the inliers' votes that has to agree so well. */
+static const double sharper = 0.3, min_core = 0.5;
 /* Up again. */
 static const double plenty = 1.5;
 static const int good_frames = 3;
@@ -172,18 +175,42 @@ static double quality(const L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat *F,
     return least * fmin(1.0, l1l2_votes_coverage(v, pairs, inlier, count) / full_coverage);
 }
 
+/* Most of the inliers may agree far better with each other than the threshold asks: then the rest is another surface,
+ * or a subject that moves slowly, and F is theirs alone. core: of `count`, which they are. */
+static void sharpen(const L1L2Ladder *l, L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2Say say, int count,
+                    L1L2Rng *rng, const bool *inlier, bool *core, L1L2Mat *F)
+{
+    L1L2Pair near[L1L2_RANSAC_MAX_PAIRS] = {0};
+    double votes[L1L2_RANSAC_MAX_PAIRS], weights[L1L2_RANSAC_MAX_PAIRS];
+    bool agreeing[L1L2_RANSAC_MAX_PAIRS];
+    L1L2Mat sharp;
+    int n = 0;
+    for (int i = 0; i < count; i++) {
+        core[i] = inlier[i];
+        if (inlier[i])
+            near[n] = pairs[i], votes[n] = say.votes[i], weights[n++] = say.weights[i];
+    }
+    l1l2_ransac(model, near, (L1L2Say){votes, weights}, n, sharper * l->threshold, rng, agreeing, &sharp);
+    if (votes_of(votes, agreeing, n) < min_core * votes_of(votes, NULL, n))
+        return;
+    *F = sharp;
+    for (int i = 0, k = 0; i < count; i++)
+        core[i] = inlier[i] && agreeing[k++];
+}
+
 static const L1L2StabModel model_of[] = {L1L2STAB_MODEL_TRANSLATION, L1L2STAB_MODEL_SIMILARITY, L1L2STAB_MODEL_AFFINE};
 
 L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *pairs, L1L2Say say, int count,
-                             bool selected, L1L2Rng *rng, bool *inlier)
+                             bool selected, L1L2Rng *rng, bool *inlier, bool *core)
 {
     L1L2Rung r = {.model = L1L2STAB_MODEL_NONE, .F = l1l2_mat_identity()};
     for (int rung = (int)l->wanted; rung >= L1L2STAB_MOTION_MODEL_TRANSLATION; rung--) {
         const L1L2StabMotionModel model = (L1L2StabMotionModel)rung;
         const double threshold = (rung == L1L2STAB_MOTION_MODEL_TRANSLATION ? wider : 1.0) * l->threshold;
+        int in_rows = 0;
         r.inliers = l1l2_ransac(model, pairs, say, count, threshold, rng, inlier, &r.F);
         if (rung == L1L2STAB_MOTION_MODEL_SIMILARITY && r.inliers < most_agree * count) {
-            const int in_rows = l1l2_rows_fit(pairs, say.votes, count, v->half_h, threshold, inlier, &r.F);
+            in_rows = l1l2_rows_fit(pairs, say.votes, count, v->half_h, threshold, inlier, &r.F);
             r.inliers = in_rows > 0 ? in_rows : r.inliers;
         }
         if (!stands(l, model, v, pairs, count, inlier, &r) || !may_rise(l, model, r.inliers))
@@ -195,6 +222,10 @@ L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *
         if (ambiguous)
             break;
         r.model = model_of[rung];
+        if (in_rows > 0 || rung == L1L2STAB_MOTION_MODEL_TRANSLATION)
+            memcpy(core, inlier, (size_t)count * sizeof *core);
+        else
+            sharpen(l, model, pairs, say, count, rng, inlier, core, &r.F);
         const double error = expected_error(l, v, &r, pairs, inlier, count);
         r.quality /= 1.0 + error / l->threshold;
         r.F = significant_part(&r.F, error, v);

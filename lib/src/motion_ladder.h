@@ -35,9 +35,10 @@ typedef struct L1L2Rung {
 /* A path starts: the motion before it means nothing. */
 void l1l2_ladder_reset(L1L2Ladder *l);
 
-/* selected: points were chosen anew for this frame. inlier: `count` flags out. */
+/* selected: points were chosen anew for this frame. inlier, core: `count` flags out; of the inliers, the core is what F
+ * was fitted to. */
 L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *pairs, L1L2Say say, int count,
-                             bool selected, L1L2Rng *rng, bool *inlier);
+                             bool selected, L1L2Rng *rng, bool *inlier, bool *core);
 
 /* A similarity that was found otherwise. */
 L1L2Rung l1l2_ladder_accept(L1L2Ladder *l, const L1L2Mat *F, int inliers, double quality);

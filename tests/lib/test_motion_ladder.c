@@ -15,7 +15,7 @@ static const double threshold = 1.5 / 734.0, pixel = 1.0 / 734.0;
 static L1L2Rng rng;
 static L1L2Pair pairs[COUNT];
 static int age[COUNT];
-static bool inlier[COUNT];
+static bool inlier[COUNT], core[COUNT];
 static double votes[COUNT], weights[COUNT];
 static L1L2Votes voters;
 
@@ -53,7 +53,7 @@ static L1L2Ladder ladder_new(L1L2StabMotionModel wanted)
 static L1L2Rung measure(L1L2Ladder *l, int count)
 {
     l1l2_votes_cast(&voters, pairs, age, count, votes, weights);
-    return l1l2_ladder_measure(l, &voters, pairs, (L1L2Say){votes, weights}, count, true, &rng, inlier);
+    return l1l2_ladder_measure(l, &voters, pairs, (L1L2Say){votes, weights}, count, true, &rng, inlier, core);
 }
 
 static double error_of(const L1L2Rung *r, const L1L2Mat *truth)

@@ -6,7 +6,7 @@
 
 enum { W = L1L2_THUMBNAIL_W, H = L1L2_THUMBNAIL_H };
 
-static const int lags[] = {6, 12, 24, 48}; /* frames */
+static const int lags[] = {6, 9, 12, 18, 24, 36, 48}; /* frames */
 static const double same_shot = 0.5;       /* correlation */
 static const double mixed = 0.9;           /* part of the variance of the picture in between that the two explain */
 static const double least_part = 0.2;      /* of each of the two in it */
@@ -97,7 +97,7 @@ bool l1l2_dissolve_push(L1L2Dissolve *d, const L1L2Thumbnail *thumbnail, const L
     const double x = d->frame[d->newest].x + 0.5 * W * F->m[2] / half_w;
     const double y = d->frame[d->newest].y + 0.5 * H * F->m[5] / half_h;
     append(d, thumbnail, x, y);
-    for (int i = 0; i < 4; i++)
+    for (size_t i = 0; i < sizeof lags / sizeof *lags; i++)
         if (lags[i] < d->count && dissolved(d, lags[i]))
             return true;
     return false;

@@ -17,8 +17,9 @@ static const double wider = 2.0, min_share_fallback = 0.5;
 static const double max_spread = 0.5; /* rms of the inliers' residuals, of the threshold; evenly filled it is 0.71 */
 /* Where fewer agree, rows may have moved differently. */
 static const double most_agree = 0.7;
-/* The inner threshold, of the outer one, and the part of the inliers' votes that has to agree so well. */
-static const double sharper = 0.3, min_core = 0.5;
+/* The inner threshold, of the outer one; the part of the inliers' votes that has to agree so well; the part that is left
+ * then, at least, and what of it has to agree with itself as well. */
+static const double sharper = 0.3, min_core = 0.5, min_rest = 0.05, min_second = 0.8, min_apart = 0.5;
 /* Up again. */
 static const double plenty = 1.5;
 static const int good_frames = 3;
@@ -175,27 +176,43 @@ static double quality(const L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat *F,
     return least * fmin(1.0, l1l2_votes_coverage(v, pairs, inlier, count) / full_coverage);
 }
 
-/* Most of the inliers may agree far better with each other than the threshold asks: then the rest is another surface,
- * or a subject that moves slowly, and F is theirs alone. core: of `count`, which they are. */
-static void sharpen(const L1L2Ladder *l, L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2Say say, int count,
-                    L1L2Rng *rng, const bool *inlier, bool *core, L1L2Mat *F)
+/* The tightest motion of the pairs that `of` names: its votes, and in `agreeing` whose it is. */
+static double tight_motion(const L1L2Ladder *l, L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2Say say,
+                           const bool *of, int count, L1L2Rng *rng, bool *agreeing, L1L2Mat *F)
 {
     L1L2Pair near[L1L2_RANSAC_MAX_PAIRS] = {0};
     double votes[L1L2_RANSAC_MAX_PAIRS], weights[L1L2_RANSAC_MAX_PAIRS];
-    bool agreeing[L1L2_RANSAC_MAX_PAIRS];
-    L1L2Mat sharp;
+    bool tight[L1L2_RANSAC_MAX_PAIRS];
     int n = 0;
-    for (int i = 0; i < count; i++) {
-        core[i] = inlier[i];
-        if (inlier[i])
+    for (int i = 0; i < count; i++)
+        if (of[i])
             near[n] = pairs[i], votes[n] = say.votes[i], weights[n++] = say.weights[i];
-    }
-    l1l2_ransac(model, near, (L1L2Say){votes, weights}, n, sharper * l->threshold, rng, agreeing, &sharp);
-    if (votes_of(votes, agreeing, n) < min_core * votes_of(votes, NULL, n))
-        return;
-    *F = sharp;
+    l1l2_ransac(model, near, (L1L2Say){votes, weights}, n, sharper * l->threshold, rng, tight, F);
     for (int i = 0, k = 0; i < count; i++)
-        core[i] = inlier[i] && agreeing[k++];
+        agreeing[i] = of[i] && tight[k++];
+    return votes_of(votes, tight, n);
+}
+
+/* The inliers may be of two motions, each of which agrees far better than the threshold asks: a background, and a
+ * subject that moves slowly or another surface. Then F is the first one's alone. Where depth is continuous it is not so,
+ * and F is the mean of all. core: of `count`, to whom F was fitted. */
+static void sharpen(const L1L2Ladder *l, L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2Say say, int count,
+                    L1L2Rng *rng, const bool *inlier, bool *core, L1L2Mat *F)
+{
+    bool first[L1L2_RANSAC_MAX_PAIRS], second[L1L2_RANSAC_MAX_PAIRS], rest[L1L2_RANSAC_MAX_PAIRS] = {false};
+    L1L2Mat sharp, other;
+    memcpy(core, inlier, (size_t)count * sizeof *core);
+    const double all = votes_of(say.votes, inlier, count);
+    const double firsts = tight_motion(l, model, pairs, say, inlier, count, rng, first, &sharp);
+    if (firsts < min_core * all || firsts > all - min_rest * all)
+        return;
+    for (int i = 0; i < count; i++)
+        rest[i] = inlier[i] && !first[i];
+    if (tight_motion(l, model, pairs, say, rest, count, rng, second, &other) < min_second * (all - firsts) ||
+        spread(&sharp, pairs, second, count) < min_apart * l->threshold)
+        return;
+    memcpy(core, first, (size_t)count * sizeof *core);
+    *F = sharp;
 }
 
 static const L1L2StabModel model_of[] = {L1L2STAB_MODEL_TRANSLATION, L1L2STAB_MODEL_SIMILARITY, L1L2STAB_MODEL_AFFINE};

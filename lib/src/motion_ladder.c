@@ -17,8 +17,8 @@ static const double wider = 2.0, min_share_fallback = 0.5;
 static const double max_spread = 0.5; /* rms of the inliers' residuals, of the threshold; evenly filled it is 0.71 */
 /* Where fewer agree, rows may have moved differently. */
 static const double most_agree = 0.7;
-/* The inner threshold, of the outer one; the part of the inliers' votes that has to agree so well; the part that is left
- * then, at least, and what of it has to agree with itself as well. */
+/* The inner threshold, of the outer one; the part of the inliers' votes that has to agree so well; the part left
+ * then, at least, and what of it has to agree with itself as well; and how far apart both are. */
 static const double sharper = 0.3, min_core = 0.5, min_rest = 0.05, min_second = 0.8, min_apart = 0.5;
 /* Up again. */
 static const double plenty = 1.5;
@@ -34,6 +34,9 @@ static const int min_rival_inliers = 8;
 /* A motion that does not rise above what the tracks' noise makes of it is none: the dark would shake. Below the first,
  * in thresholds, noise is not in question (200 good tracks: 0.01). */
 static const double clear_error = 0.035, significant = 3.0, most_unseen = 3.0;
+/* So long a motion has been none, so many times what noise makes of it; what is left of a sum from frame to frame. */
+static const int still_frames = 15;
+static const double still_errors = 4.0, still_memory = 0.98;
 /* Next to the inliers it is another depth of the same scene, and no harm to follow; from here on, in thresholds, it is
  * another thing. */
 static const double far_apart = 4.0;
@@ -48,6 +51,7 @@ void l1l2_ladder_reset(L1L2Ladder *l)
     l->waiting = l->lost = 0;
     l->last = l1l2_mat_identity();
     l->agreed = 1.0;
+    memset(&l->still, 0, sizeof l->still);
 }
 
 /* The singular values of the linear part lie within the scales, and it turns little. */
@@ -84,19 +88,38 @@ static double expected_error(const L1L2Ladder *l, const L1L2Votes *v, const L1L2
     const double corner2 = v->half_w * v->half_w + v->half_h * v->half_h;
     const double lever = r->model == L1L2STAB_MODEL_TRANSLATION || radius2 == 0.0 ? 1.0 : 1.0 + corner2 / radius2;
     const double unseen = fmin(count * count / (n * n), most_unseen);
-    return fmax(0.0, deviation * sqrt(lever / n) * unseen - clear_error * l->threshold);
+    return deviation * sqrt(lever / n) * unseen;
 }
 
 /* F as far as it is significant: Wiener's gain, over the identity. */
-static L1L2Mat significant_part(const L1L2Mat *F, double error, const L1L2Votes *v)
+static L1L2Mat significant_part(const L1L2Ladder *l, const L1L2Mat *F, double expected, const L1L2Votes *v)
 {
     const L1L2Mat identity = l1l2_mat_identity();
+    const double error = fmax(0.0, expected - clear_error * l->threshold);
     const double size = l1l2_mat_corner_distance(F, &identity, v->half_w, v->half_h), noise = significant * error;
     const double gain = noise > 0.0 ? fmax(0.0, 1.0 - noise * noise / (size * size + 1e-300)) : 1.0;
     L1L2Mat part = *F;
     for (int i = 0; i < 6 && gain < 1.0; i++)
         part.m[i] = identity.m[i] + gain * (F->m[i] - identity.m[i]);
     return part;
+}
+
+/* Small errors of many frames add up to a drift, and a tripod's picture would wander. While the sum of the motions
+ * stays within what noise makes of it, the camera stands still. A pan of some thousandths of a pixel a frame ends that. */
+static void hold_still(L1L2Ladder *l, L1L2Mat *F, double expected, const L1L2Votes *v)
+{
+    const L1L2Mat identity = l1l2_mat_identity();
+    L1L2Mat sum = identity;
+    for (int i = 0; i < 6; i++) {
+        l->still.sum[i] = still_memory * l->still.sum[i] + F->m[i] - identity.m[i];
+        sum.m[i] += l->still.sum[i];
+    }
+    l->still.variance = still_memory * l->still.variance + expected * expected;
+    const double moved = l1l2_mat_corner_distance(&sum, &identity, v->half_w, v->half_h);
+    if (moved > still_errors * sqrt(l->still.variance))
+        memset(&l->still, 0, sizeof l->still);
+    else if (++l->still.frames >= still_frames)
+        *F = identity;
 }
 
 /* Does the rung bear? */
@@ -194,8 +217,8 @@ static double tight_motion(const L1L2Ladder *l, L1L2StabMotionModel model, const
 }
 
 /* The inliers may be of two motions, each of which agrees far better than the threshold asks: a background, and a
- * subject that moves slowly or another surface. Then F is the first one's alone. Where depth is continuous it is not so,
- * and F is the mean of all. core: of `count`, to whom F was fitted. */
+ * subject that moves slowly or another surface. Then F is the first one's alone. Where depth is continuous it is not
+ * so, and F is the mean of all. core: of `count`, to whom F was fitted. */
 static void sharpen(const L1L2Ladder *l, L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2Say say, int count,
                     L1L2Rng *rng, const bool *inlier, bool *core, L1L2Mat *F)
 {
@@ -244,8 +267,9 @@ L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *
         else
             sharpen(l, model, pairs, say, count, rng, inlier, core, &r.F);
         const double error = expected_error(l, v, &r, pairs, inlier, count);
-        r.quality /= 1.0 + error / l->threshold;
-        r.F = significant_part(&r.F, error, v);
+        r.quality /= 1.0 + fmax(0.0, error / l->threshold - clear_error);
+        r.F = significant_part(l, &r.F, error, v);
+        hold_still(l, &r.F, error, v);
         l->rung = model;
         l->last = r.F;
         l->lost = 0;
@@ -267,6 +291,7 @@ L1L2Rung l1l2_ladder_predict(L1L2Ladder *l)
     l->lost++;
     l->rung = l->wanted;
     l->waiting = 0;
+    memset(&l->still, 0, sizeof l->still);
     for (int i = 0; i < 9; i++) {
         const double identity = i % 4 == 0 ? 1.0 : 0.0;
         l->last.m[i] = identity + prediction_fade * (l->last.m[i] - identity);

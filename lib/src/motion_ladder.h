@@ -22,6 +22,11 @@ typedef struct L1L2Ladder {
     int waiting;                /* frames in a row that a higher one was */
     L1L2Mat last;               /* the last measured motion, fading while it is predicted from */
     int lost;                   /* frames since then */
+    struct {                    /* a camera that stands still, as far as can be told */
+        int frames;             /* so long */
+        double sum[6];          /* of F less the identity, fading */
+        double variance;        /* that noise has given it, at the corners */
+    } still;
     double agreed;              /* quality when points were chosen last: after that, only those that agree are left */
 } L1L2Ladder;
 

@@ -46,12 +46,12 @@ START_TEST(over_ten_seconds_the_path_drifts_by_less_than_a_pixel)
 }
 END_TEST
 
-START_TEST(a_tripod_stands_still)
+START_TEST(a_tripod_stays_where_it_is_for_a_thousand_frames)
 {
-    enum { FRAMES = 300 };
+    enum { FRAMES = 1000 };
     SynthConfig cfg = synth_defaults();
     cfg.shake = cfg.roll = 0.0;
-    cfg.noise = 5.0;
+    cfg.noise = 5.0, cfg.seed = 2;
     SynthTrial trial = synth_trial_new(&cfg, FRAMES);
     ck_assert_int_eq(trial.lost + trial.starts, 0);
     const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -87,7 +87,7 @@ int main(void)
     tcase_set_timeout(tc, 110);
     tcase_add_test(tc, the_motion_of_planar_clips_is_exact_to_a_twentieth_of_a_pixel);
     tcase_add_test(tc, over_ten_seconds_the_path_drifts_by_less_than_a_pixel);
-    tcase_add_test(tc, a_tripod_stands_still);
+    tcase_add_test(tc, a_tripod_stays_where_it_is_for_a_thousand_frames);
     tcase_add_loop_test(tc, ten_bits_give_the_motion_of_eight, 0, 3);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);

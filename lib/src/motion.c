@@ -180,6 +180,20 @@ static void start_shot(L1L2Motion *m, L1L2MotionResult *out, const char *how)
     start_path(m);
 }
 
+/* Whose motion may bend the picture: not where something moved by itself lately, however slowly. */
+static int trusted(const L1L2Motion *m, const bool *agrees, L1L2Pair *pairs, bool *agreeing, int *from)
+{
+    const double least_trust = 0.8;
+    int n = 0;
+    for (int i = 0; i < m->points; i++)
+        if (l1l2_votes_trust(&m->voters, m->pair[i].from) >= least_trust) {
+            pairs[n] = m->pair[i];
+            agreeing[n] = agrees[i];
+            from[n++] = i;
+        }
+    return n;
+}
+
 /* Step 4, as far as it is about two frames. Points that agree with the residual are the camera's too. Where rows move
  * so differently that no similarity is found, a wide one is good enough to begin with, if all comes together in the
  * end. */
@@ -193,16 +207,20 @@ static void fit_residual(L1L2Motion *m, L1L2Rung *rung, L1L2MotionResult *out)
         return;
     const bool found = rung->model >= L1L2STAB_MODEL_SIMILARITY;
     L1L2Mat F = rung->F;
-    bool agrees[MAX_POINTS];
-    memcpy(agrees, m->inlier, sizeof agrees);
+    L1L2Pair pairs[MAX_POINTS] = {0};
+    bool agrees[MAX_POINTS], agreeing[MAX_POINTS];
+    int from[MAX_POINTS];
+    memcpy(agrees, m->core, sizeof agrees);
     if (!found && l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, m->pair, (L1L2Say){m->votes, m->weights}, count,
                               wide * threshold, &m->rng, agrees, &F) < min_share * count)
         return;
-    const int inliers = l1l2_motion_residual_fit(&shape, m->pair, count, threshold, agrees, &F, &out->residual);
+    const int n = trusted(m, agrees, pairs, agreeing, from);
+    const int inliers = l1l2_motion_residual_fit(&shape, pairs, n, threshold, agreeing, &F, &out->residual);
     out->has_residual = inliers >= (found ? 1 : min_share * count);
     if (!out->has_residual || out->residual.explained < min_explained * out->residual.all)
         return;
-    memcpy(m->inlier, agrees, sizeof agrees);
+    for (int k = 0; k < n; k++)
+        m->inlier[from[k]] = m->core[from[k]] = agreeing[k];
     if (!found || (inliers >= most * count && rung->inliers < few * inliers)) {
         const L1L2Mat rest = l1l2_residual_split(&shape, &out->residual.r);
         for (int i = 0; i < 6; i++)

@@ -105,7 +105,8 @@ static L1L2Mat significant_part(const L1L2Ladder *l, const L1L2Mat *F, double ex
 }
 
 /* Small errors of many frames add up to a drift, and a tripod's picture would wander. While the sum of the motions
- * stays within what noise makes of it, the camera stands still. A pan of some thousandths of a pixel a frame ends that. */
+ * stays within what noise makes of it, the camera stands still. A pan of some thousandths of a pixel a frame ends
+ * that. */
 static void hold_still(L1L2Ladder *l, L1L2Mat *F, double expected, const L1L2Votes *v)
 {
     const L1L2Mat identity = l1l2_mat_identity();

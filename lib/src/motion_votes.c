@@ -67,6 +67,11 @@ void l1l2_votes_learn(L1L2Votes *v, const L1L2Pair *pairs, const bool *inlier, i
             v->trust[cell] += learning_rate * ((double)agreeing[cell] / population[cell] - v->trust[cell]);
 }
 
+double l1l2_votes_trust(const L1L2Votes *v, L1L2Point p)
+{
+    return v->trust[cell_of(v, p)];
+}
+
 double l1l2_votes_coverage(const L1L2Votes *v, const L1L2Pair *pairs, const bool *inlier, int count)
 {
     bool covered[CELLS] = {false};

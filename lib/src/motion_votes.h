@@ -32,6 +32,9 @@ void l1l2_votes_cast(const L1L2Votes *v, const L1L2Pair *pairs, const int *age, 
 /* Which of them moved with the camera this time. */
 void l1l2_votes_learn(L1L2Votes *v, const L1L2Pair *pairs, const bool *inlier, int count);
 
+/* What the cell of a point is trusted, [0, 1]. */
+double l1l2_votes_trust(const L1L2Votes *v, L1L2Point p);
+
 /* Part of the frame's cells in which an inlier lies, [0, 1]. */
 double l1l2_votes_coverage(const L1L2Votes *v, const L1L2Pair *pairs, const bool *inlier, int count);
 

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # The element beside FFmpeg's vidstabdetect + vidstabtransform and deshake, at their defaults, on one file and the same
-# cores: CPU and wall time a frame above decoding, ms, medians. All take turns, so that all meet the same machine.
+# cores: CPU and wall time a frame above decoding, ms, medians. All take turns, so that all meet the same machine. What
+# tracking costs is what a run takes less when the motion is read from a file.
 # usage: compare-ffmpeg.sh BUILD [CLIP.mp4 [ROUNDS [CORES]]]
 # Without a clip, or with '': 1080p30 of the test scene. CORES: as taskset has them, by default 0,1. Needs GNU time.
 set -eu
@@ -34,12 +35,13 @@ run() {
     vidstabtransform) by_ffmpeg -vf "vidstabtransform=input=$work/motion.trf" ;;
     deshake) by_ffmpeg -vf deshake ;;
     gst-decode) by_gst ;;
-    bicubic) by_gst ! l1l2stab ;;
+    bicubic) by_gst ! l1l2stab motion-out="$work/motion.txt" ;;
+    given) by_gst ! l1l2stab motion-in="$work/motion.txt" ;;
     bilinear) by_gst ! l1l2stab interpolation=bilinear ;;
   esac
 }
 
-all='ffmpeg-decode vidstabdetect vidstabtransform deshake gst-decode bicubic bilinear'
+all='ffmpeg-decode vidstabdetect vidstabtransform deshake gst-decode bicubic given bilinear'
 for round in $(seq "$rounds"); do
   for what in $all; do
     run > "$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
@@ -60,7 +62,7 @@ above() { echo "$(median "$1" "$3") $(median "$2" "$3")" | awk '{ print $1 - $2 
     for what in $all; do
       case $what in
         *-decode) echo "$column $what $(median "$what" "$column")" ;;
-        bi*) echo "$column $what $(above "$what" gst-decode "$column")" ;;
+        bi* | given) echo "$column $what $(above "$what" gst-decode "$column")" ;;
         *) echo "$column $what $(above "$what" ffmpeg-decode "$column")" ;;
       esac
     done
@@ -80,8 +82,12 @@ above() { echo "$(median "$1" "$3") $(median "$2" "$3")" | awk '{ print $1 - $2 
     line("  deshake", "deshake")
     line("  l1l2stab (bicubic)", "bicubic")
     line("  l1l2stab interpolation=bilinear", "bilinear")
+    for (c = 1; c <= 2; c++) ms[c, "tracking"] = ms[c, "bicubic"] - ms[c, "given"]
+    line("  l1l2stab, tracking alone", "tracking")
     print "times as fast:"
     ratio("  bicubic over vidstabdetect + transform", vidstab[1] / ms[1, "bicubic"], vidstab[2] / ms[2, "bicubic"])
     ratio("  bilinear over vidstabdetect + transform", vidstab[1] / ms[1, "bilinear"], vidstab[2] / ms[2, "bilinear"])
+    ratio("  tracking over vidstabdetect", ms[1, "vidstabdetect"] / ms[1, "tracking"],
+          ms[2, "vidstabdetect"] / ms[2, "tracking"])
     ratio("  bicubic over deshake", ms[1, "deshake"] / ms[1, "bicubic"], ms[2, "deshake"] / ms[2, "bicubic"])
   }'

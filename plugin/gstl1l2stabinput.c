@@ -19,10 +19,13 @@ gst_l1l2_stab_input_frame (GstL1L2StabOutput * output,
   const GstClockTime pts = GST_BUFFER_PTS (frame);
   const GstClockTime time =
       gst_l1l2_stab_glue_stream_time (&output->trans->segment, frame);
+  /* In reverse a decoder marks each group of pictures, though none is missing. */
+  const gboolean is_torn = GST_BUFFER_IS_DISCONT (frame)
+      && output->trans->segment.rate > 0;
   GstFlowReturn ret = gst_l1l2_stab_output_take_flow (output);
 
   /* A frame that could not be pushed before, for want of a buffer, goes first in any case. */
-  if (ret == GST_FLOW_OK && GST_BUFFER_IS_DISCONT (frame))
+  if (ret == GST_FLOW_OK && is_torn)
     ret = gst_l1l2_stab_output_drain (output);
   else if (ret == GST_FLOW_OK)
     ret = gst_l1l2_stab_output_push_ready (output);

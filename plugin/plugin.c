@@ -26,6 +26,9 @@
  * take effect with the next caps, or when the element is started again; so does
  * the size that crop-ratio gives with output-size=crop.
  *
+ * In reverse playback a window goes on over the discontinuities that decoders
+ * mark at each group of pictures; forward, a discontinuity ends it.
+ *
  * Interlaced video has to be deinterlaced first, and frames in the memory of a
  * GPU have to be downloaded.
  *

@@ -5,17 +5,16 @@
 #define WINDOW 4
 
 static const gchar *formats[] = {
-  "I420", "NV12", "YV12", "NV21", "I420_10LE", "P010_10LE", "I420_12LE",
-  "P012_LE", "P016_LE", "Y42B", "NV16", "NV61", "YUY2", "UYVY", "YVYU", "VYUY",
-  "I422_10LE", "I422_12LE", "Y444", "NV24", "AYUV", "VUYA", "Y444_10LE",
-  "Y444_12LE", "Y444_16LE", "Y41B", "A420", "AV12", "A420_10LE",
-  "A422_10LE", "A444_10LE", "BGRx", "RGBx", "xRGB", "xBGR", "BGRA", "RGBA",
-  "ARGB", "ABGR", "BGR", "RGB", "GBR", "GBRA", "GBR_10LE", "GBR_12LE",
-  "GBRA_10LE", "GBRA_12LE", "BGRA64_LE", "RGBA64_LE", "ARGB64_LE", "ABGR64_LE",
+  "I420", "NV12", "YV12", "NV21", "Y42B", "NV16", "NV61", "YUY2", "UYVY",
+  "YVYU", "VYUY", "Y444", "NV24", "AYUV", "VUYA", "Y41B", "A420", "AV12",
+  "BGRx", "RGBx", "xRGB", "xBGR", "BGRA", "RGBA", "ARGB", "ABGR", "BGR", "RGB",
+  "GBR", "GBRA", "GRAY8",
 #if G_BYTE_ORDER == G_LITTLE_ENDIAN
-  "ARGB64", "AYUV64",
+  "I420_10LE", "P010_10LE", "I420_12LE", "P012_LE", "P016_LE", "I422_10LE",
+  "I422_12LE", "Y444_10LE", "Y444_12LE", "Y444_16LE", "A420_10LE", "A422_10LE",
+  "A444_10LE", "GBR_10LE", "GBR_12LE", "GBRA_10LE", "GBRA_12LE", "BGRA64_LE",
+  "RGBA64_LE", "ARGB64_LE", "ABGR64_LE", "ARGB64", "AYUV64", "GRAY16_LE",
 #endif
-  "GRAY8", "GRAY16_LE"
 };
 
 static const struct

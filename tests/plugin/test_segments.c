@@ -79,6 +79,34 @@ GST_START_TEST (in_reverse_the_frames_and_the_position_go_back)
 
 GST_END_TEST;
 
+/* Every tenth frame, as of groups of ten. */
+GST_START_TEST (in_reverse_the_marks_of_a_decoder_end_no_window)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  gint i;
+
+  push_segment (h, -1, GST_SEGMENT_FLAG_NONE);
+  for (i = 49; i >= 0; i--) {
+    GstBuffer *buffer = stab_frame_new (h, i);
+    const gint next = i + WINDOW - 1;
+
+    if (i % 10 == 9)
+      GST_BUFFER_FLAG_SET (buffer, GST_BUFFER_FLAG_DISCONT);
+    fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
+    fail_unless_equals_int (gst_harness_buffers_in_queue (h), next < 50);
+    if (next < 50) {
+      buffer = gst_harness_pull (h);
+      fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer),
+          next * FRAME_DURATION);
+      fail_unless_equals_int (GST_BUFFER_IS_DISCONT (buffer), next % 10 == 9);
+      gst_buffer_unref (buffer);
+    }
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 /* Each by itself, and framed as in normal playback: the region tells. */
 GST_START_TEST (key_frames_alone_leave_at_once)
 {
@@ -146,6 +174,7 @@ segments_suite (void)
   tcase_add_loop_test (tc, the_window_is_full_at_any_rate, 0,
       G_N_ELEMENTS (rates));
   tcase_add_test (tc, in_reverse_the_frames_and_the_position_go_back);
+  tcase_add_test (tc, in_reverse_the_marks_of_a_decoder_end_no_window);
   tcase_add_test (tc, key_frames_alone_leave_at_once);
   tcase_add_test (tc, a_segment_goes_downstream_as_it_came);
   return s;

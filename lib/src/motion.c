@@ -194,12 +194,18 @@ static int trusted(const L1L2Motion *m, const bool *agrees, L1L2Pair *pairs, boo
     return n;
 }
 
-/* Step 4, as far as it is about two frames. Points that agree with the residual are the camera's too. Where rows move
- * so differently that no similarity is found, a wide one is good enough to begin with, if all comes together in the
- * end. */
+static bool explains(const L1L2ResidualStep *step, int division, double part)
+{
+    return step->explained[division] >= part * step->all[division];
+}
+
+/* Step 4, as far as it is about two frames. Points that agree with the residual are the camera's too, if all columns
+ * tell it alike: a slow subject that was taken in once would never be found out. Where rows move so differently that no
+ * similarity is found, a wide one is good enough to begin with, if all comes together in the end. */
 static void fit_residual(L1L2Motion *m, L1L2Rung *rung, L1L2MotionResult *out)
 {
-    const double wide = 3.0, min_share = 0.7, min_explained = 0.3, most = 0.85, few = 0.7;
+    const double wide = 3.0, min_share = 0.7, most = 0.85, few = 0.7;
+    const double min_explained = 0.3, enough_explained = 0.5;
     const L1L2ResidualShape shape = {m->cfg.rolling_shutter, m->voters.half_w, m->voters.half_h};
     const int count = m->points;
     const double threshold = m->ladder.threshold;
@@ -217,8 +223,11 @@ static void fit_residual(L1L2Motion *m, L1L2Rung *rung, L1L2MotionResult *out)
     const int n = trusted(m, agrees, pairs, agreeing, from);
     const int inliers = l1l2_motion_residual_fit(&shape, pairs, n, threshold, agreeing, &F, &out->residual);
     out->has_residual = inliers >= (found ? 1 : min_share * count);
-    if (!out->has_residual || out->residual.explained < min_explained * out->residual.all)
+    if (!out->has_residual || !explains(&out->residual, L1L2_DIVISION_HALVES, min_explained))
         return;
+    for (int division = 0; division < L1L2_DIVISIONS && found; division++)
+        if (!explains(&out->residual, division, enough_explained))
+            return;
     for (int k = 0; k < n; k++)
         m->inlier[from[k]] = m->core[from[k]] = agreeing[k];
     if (!found || (inliers >= most * count && rung->inliers < few * inliers)) {

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "ransac_fit.h"
+
 enum { N = L1L2_RESIDUAL_SIZE };
 
 /* Against a point's weight of 1. A second difference of the bands costs `bending`: at less, noise bends the rows; at
@@ -131,15 +133,14 @@ static L1L2Point left_by(const Points *points, const L1L2Residual *fit, int i, L
     return (L1L2Point){moved->x - r.x, moved->y - r.y};
 }
 
-/* One round on the points first, first + stride, ..., with weights by what `fit` leaves of them; where there is no fit
+/* One round, with weights by what `fit` leaves of them; where there is no fit
  * yet, all of `inlier` weigh the same, and what moves by itself has no say in the beginning. */
-static bool refit(const Points *points, int first, int stride, double width, const bool *inlier,
-                  const L1L2Residual *fit, L1L2Residual *out)
+static bool refit(const Points *points, double width, const bool *inlier, const L1L2Residual *fit, L1L2Residual *out)
 {
     const int size = l1l2_residual_size(points->shape);
     Normal normal;
-    regularise(points->shape, points->count / stride, &normal);
-    for (int i = first; i < points->count; i += stride) {
+    regularise(points->shape, points->count, &normal);
+    for (int i = 0; i < points->count; i++) {
         double x[N], y[N];
         L1L2Point at;
         const L1L2Point d = displacement(&points->pairs[i], points->F, &at);
@@ -154,19 +155,49 @@ static bool refit(const Points *points, int first, int stride, double width, con
     return solve(&normal, size, out->p);
 }
 
-/* Each half of the points, told by the other half. */
-static void validate(const Points *points, double width, L1L2ResidualStep *step)
+/* The parts of a division, each of which the rest has to tell. A shutter bends all of a row alike; what moves by itself
+ * has a width. */
+static const int parts[L1L2_DIVISIONS] = {2, 3, 2};
+
+static int part_of(const Points *points, int division, int i)
 {
-    for (int half = 0; half < 2; half++) {
+    const double x = points->pairs[i].from.x / points->shape->half_w;
+    switch (division) {
+    case L1L2_DIVISION_HALVES:
+        return i % 2;
+    case L1L2_DIVISION_THIRDS:
+        return (x > -1.0 / 3.0) + (x > 1.0 / 3.0);
+    default:
+        return fabs(x) > 0.5;
+    }
+}
+
+/* One round on all but one part, with weights by what `fit` leaves. */
+static bool refit_rest(const Points *points, int division, int part, double width, const L1L2Residual *fit,
+                       L1L2Residual *out)
+{
+    L1L2Pair pairs[L1L2_RANSAC_MAX_PAIRS];
+    Points rest = {points->shape, pairs, points->F, 0};
+    for (int i = 0; i < points->count; i++)
+        if (part_of(points, division, i) != part)
+            pairs[rest.count++] = points->pairs[i];
+    return refit(&rest, width, NULL, fit, out);
+}
+
+static void validate(const Points *points, int division, double width, L1L2ResidualStep *step)
+{
+    for (int part = 0; part < parts[division]; part++) {
         L1L2Residual other = {{0.0}};
-        if (!refit(points, 1 - half, 2, width, NULL, &step->r, &other))
+        if (!refit_rest(points, division, part, width, &step->r, &other))
             continue;
-        for (int i = half; i < points->count; i += 2) {
+        for (int i = 0; i < points->count; i++) {
+            if (part_of(points, division, i) != part)
+                continue;
             L1L2Point d;
             const double weight = trust(left_by(points, &step->r, i, &d), width);
             const L1L2Point left = left_by(points, &other, i, &d);
-            step->all += weight * (d.x * d.x + d.y * d.y);
-            step->explained += weight * (d.x * d.x + d.y * d.y - left.x * left.x - left.y * left.y);
+            step->all[division] += weight * (d.x * d.x + d.y * d.y);
+            step->explained[division] += weight * (d.x * d.x + d.y * d.y - left.x * left.x - left.y * left.y);
         }
     }
 }
@@ -177,16 +208,17 @@ int l1l2_motion_residual_fit(const L1L2ResidualShape *shape, const L1L2Pair *pai
     const Points points = {shape, pairs, F, count};
     memset(step, 0, sizeof *step);
     L1L2Residual fit = {{0.0}};
-    bool ok = covered(shape, pairs, count, inlier) && refit(&points, 0, 1, 0.0, inlier, &fit, &step->r);
+    bool ok = covered(shape, pairs, count, inlier) && refit(&points, 0.0, inlier, &fit, &step->r);
     for (int k = 0; k < ROUNDS && ok; k++) {
         fit = step->r;
-        ok = refit(&points, 0, 1, scale[k] * threshold, NULL, &fit, &step->r);
+        ok = refit(&points, scale[k] * threshold, NULL, &fit, &step->r);
     }
     if (!ok) {
         memset(step, 0, sizeof *step);
         return 0;
     }
-    validate(&points, scale[ROUNDS - 1] * threshold, step);
+    for (int division = 0; division < L1L2_DIVISIONS; division++)
+        validate(&points, division, scale[ROUNDS - 1] * threshold, step);
     int inliers = 0;
     for (int i = 0; i < count; i++) {
         L1L2Point d;

@@ -36,11 +36,19 @@ typedef struct L1L2Residual {
     double p[L1L2_RESIDUAL_SIZE]; /* of a homography the first 8; the rest 0 */
 } L1L2Residual;
 
-/* From one frame to the next, and how much of the points' displacements it explains: tested on points that were left
- * out of the fit, so that noise explains nothing. Sums of squares, weighted. */
+/* Parts of the points of which each is told by a fit to the others. */
+enum {
+    L1L2_DIVISION_HALVES, /* every second point */
+    L1L2_DIVISION_THIRDS, /* of every row: left, middle, right */
+    L1L2_DIVISION_RIMS,   /* of every row: the inner half and the outer */
+    L1L2_DIVISIONS
+};
+
+/* From one frame to the next, and how much of the points' displacements it explains, by division: tested on points that
+ * were left out of the fit, so that noise explains nothing. Sums of squares, weighted. */
 typedef struct L1L2ResidualStep {
     L1L2Residual r;
-    double explained, all;
+    double explained[L1L2_DIVISIONS], all[L1L2_DIVISIONS];
 } L1L2ResidualStep;
 
 typedef struct L1L2ResidualShape {

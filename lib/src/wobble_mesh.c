@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "wobble_mesh.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 
@@ -69,6 +70,15 @@ static double compress(double value, const Range *range, double half)
     return fmin(fmax(value, -half), half);
 }
 
+/* Samples lie between nodes: none is outside the source if no node is. */
+static bool inside(const L1L2WarpMesh *mesh, double half_w, double half_h)
+{
+    for (int i = 0; i < mesh->columns * mesh->rows; i++)
+        if (!(fabs(mesh->node[i].x) <= half_w && fabs(mesh->node[i].y) <= half_h))
+            return false;
+    return true;
+}
+
 double l1l2_wobble_mesh_set(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2ResidualShape *shape,
                             const L1L2Residual *residual, int width, int height)
 {
@@ -95,5 +105,6 @@ double l1l2_wobble_mesh_set(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2Re
     for (int i = 0; i < count; i++)
         mesh->node[i] = (L1L2Point){compress(mesh->node[i].x, &x, 0.5 * width),
                                     compress(mesh->node[i].y, &y, 0.5 * height)};
+    assert(inside(mesh, 0.5 * width, 0.5 * height));
     return longest;
 }

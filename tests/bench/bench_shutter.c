@@ -204,16 +204,16 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
     return errors;
 }
 
-static void run_movers(int frames)
+static void run_movers(int frames, double x)
 {
     static const double speeds[] = {2, 5, 15};
-    printf("\n40 %% of the picture moves by itself; wobble / bend, px\n");
+    printf("\n40 %% of the picture moves by itself, %g widths from the middle; wobble / bend, px\n", x);
     printf("px/frame    none            homography      mixture\n");
     for (int v = 0; v < 3; v++) {
         SynthConfig scene = synth_defaults();
         scene.width = WIDTH, scene.height = HEIGHT;
         scene.noise = 2.0;
-        scene.foreground = 0.4, scene.movers = 1, scene.mover_speed = speeds[v];
+        scene.foreground = 0.4, scene.movers = 1, scene.mover_speed = speeds[v], scene.mover_x = x;
         printf("%6.0f  ", speeds[v]);
         for (int model = 0; model < 3; model++) {
             const Errors e = run(&scene, frames, (L1L2StabRollingShutter)model);
@@ -248,7 +248,8 @@ int main(int argc, char **argv)
             printf("  %5.1f\n", found * 1000.0 / scene.fps);
             fflush(stdout);
         }
+    run_movers(frames, 0.2);
     picture_path = argc > 3 ? argv[3] : NULL;
-    run_movers(frames);
+    run_movers(frames, 0.0);
     return EXIT_SUCCESS;
 }

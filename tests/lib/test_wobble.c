@@ -33,7 +33,7 @@ static double camera_at(const Swing *s, double time)
 /* What the bands do from frame t to t-1, exactly; F is their mean. */
 static L1L2ResidualStep step_of(const Swing *s, int t, L1L2Mat *F)
 {
-    L1L2ResidualStep step = {.explained = 1.0, .all = 1.0};
+    L1L2ResidualStep step = {.explained = {1.0, 1.0, 1.0}, .all = {1.0, 1.0, 1.0}};
     double mean = 0.0, x[L1L2_BANDS];
     for (int k = 0; k < L1L2_BANDS; k++) {
         const double at = s->readout * l1l2_residual_band(k);
@@ -121,13 +121,30 @@ START_TEST(frames_without_a_measured_residual_and_cuts_end_nothing)
 }
 END_TEST
 
+START_TEST(what_not_all_columns_tell_alike_changes_nothing)
+{
+    L1L2Wobble *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    const L1L2Mat F = l1l2_mat_translation(0.01, 0.0);
+    L1L2ResidualStep step = {.r = {{0.001, 0.002, 0.003, 0.001}}, .all = {1.0, 1.0, 1.0}};
+    step.explained[L1L2_DIVISION_HALVES] = 0.9;
+    for (int t = 0; t < WINDOW; t++)
+        l1l2_wobble_push(w, &F, &step, t == 0);
+    for (int t = 0; t < WINDOW; t++) {
+        const L1L2Residual *e = l1l2_wobble_pull(w);
+        for (int k = 0; k < L1L2_RESIDUAL_SIZE; k++)
+            ck_assert_double_eq(e->p[k], 0.0);
+    }
+    l1l2_wobble_free(w);
+}
+END_TEST
+
 START_TEST(what_explains_nothing_changes_nothing)
 {
     L1L2Wobble *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, WINDOW);
     const L1L2Mat F = l1l2_mat_translation(0.01, 0.0), map = l1l2_mat_similarity(0.9, 0.01, 3.0, 2.0);
     double reach;
     for (int t = 0; t < WINDOW; t++) {
-        const L1L2ResidualStep step = {{{0.001, 0.002, 0.003, 0.001}}, -0.1, 1.0};
+        const L1L2ResidualStep step = {{{0.001, 0.002, 0.003, 0.001}}, {-0.1, -0.1, -0.1}, {1.0, 1.0, 1.0}};
         l1l2_wobble_push(w, &F, &step, t == 0);
     }
     for (int t = 0; t < WINDOW; t++) {
@@ -273,6 +290,7 @@ int main(void)
     tcase_add_test(tcase, the_readout_is_found_whichever_way_it_runs);
     tcase_add_test(tcase, frames_without_a_measured_residual_and_cuts_end_nothing);
     tcase_add_test(tcase, what_explains_nothing_changes_nothing);
+    tcase_add_test(tcase, what_not_all_columns_tell_alike_changes_nothing);
     tcase_add_test(tcase, reset_is_as_new);
     tcase_add_test(tcase, none_is_no_object_and_that_is_fine);
     tcase_add_test(tcase, no_sample_is_outside_the_source_for_10000_paths_and_residuals);

@@ -74,6 +74,7 @@ typedef struct SynthConfig {
     int movers;           /* 0: the foreground is a disc that sways before the lens. 1: one ellipse that moves in the
                            * scene, about the frame's middle. 2..SYNTH_MAX_MOVERS: walkers that come and go */
     double mover_speed;   /* of these in the scene, px/frame; of one: at most */
+    double mover_x;       /* of one: where it is about, widths from the middle */
     double parallax;      /* nearer layers before the scene, moving up to 1 + parallax times as far as it */
     double exposure;      /* how long the shutter is open, frames: motion blur */
     double letterbox, pillarbox; /* part of the height, the width, that black bars take */

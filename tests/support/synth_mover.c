@@ -30,7 +30,8 @@ static SynthMover subject_at(const SynthConfig *cfg, double frames, const double
     const double reach = 0.05 * cfg->width, extent = sqrt(cfg->foreground / pi);
     SynthMover mover = {.half_w = cfg->width * extent, .half_h = cfg->height * extent};
     mover.texture_x = 300.0, mover.texture_y = 500.0;
-    place(cfg, frames, M, reach * sin(cfg->mover_speed / reach * frames), 0.0, &mover);
+    const double x = cfg->mover_x * cfg->width + reach * sin(cfg->mover_speed / reach * frames);
+    place(cfg, frames, M, x, 0.0, &mover);
     return mover;
 }
 

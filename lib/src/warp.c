@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The frame's planes, cut into bands of rows that threads take in any order. A band goes run by run: the generator
- * (warp_coords.h) writes positions, the sample type (warp_u8.h) with its kernel (warp_kernel.h) renders them.
+ * (warp_coords.h) writes positions, the sample type (warp_u8.h) with its kernel (warp_kernel.h) renders them. Planes
+ * that a map moves by whole samples are copied.
  */
 #include "warp.h"
+
+#include <string.h>
 
 #include "mem.h"
 #include "warp_coords.h"
@@ -36,6 +39,8 @@ typedef struct PlaneJob {
     int sample_bytes;  /* of all its components */
     L1L2WarpRun *run;
     int bands;
+    bool copies;        /* whole steps, without a mesh: sample (u, v) is the source's (u + step_x, v + step_y) */
+    int step_x, step_y;
 } PlaneJob;
 
 typedef struct FrameJob {
@@ -93,6 +98,50 @@ static L1L2WarpRun *find_run(const L1L2WarpConfig *cfg, int taps, int components
     return (cfg->plain ? l1l2_warp_u8_run_plain : l1l2_warp_u8_run)(taps, components);
 }
 
+/* Whether the positions of all samples are whole steps. They are if those of the corners are: along a row the distance
+ * to a step is a line cut to a phase, down a column it only grows or only shrinks. */
+static void find_step(PlaneJob *job)
+{
+    for (int corner = 0; corner < 4; corner++) {
+        const int u = corner % 2 ? job->width - 1 : 0, v = corner / 2 ? job->height - 1 : 0;
+        int32_t x[1 + L1L2_WARP_RUN_SLACK], y[1 + L1L2_WARP_RUN_SLACK];
+        job->generators->affine(&job->affine, u, v, 1, x, y);
+        const int step_x = (x[0] >> L1L2_WARP_PHASE_BITS) - u, step_y = (y[0] >> L1L2_WARP_PHASE_BITS) - v;
+        if (((x[0] | y[0]) & (L1L2_WARP_PHASES - 1)) || (corner && (step_x != job->step_x || step_y != job->step_y)))
+            return;
+        job->step_x = step_x;
+        job->step_y = step_y;
+    }
+    job->copies = true;
+}
+
+static int clamp(int value, int low, int high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+static void repeat(uint8_t *dst, const uint8_t *sample, int count, int sample_bytes)
+{
+    for (int i = 0; i < count; i++)
+        memcpy(dst + i * sample_bytes, sample, (size_t)sample_bytes);
+}
+
+/* What weighing in phase 0 gives. Bits beside a component's depth, of which weighing knows nothing, are copied too. */
+static void copy_band(const PlaneJob *job, int band)
+{
+    const L1L2WarpPlane *src = &job->src;
+    const int bytes = job->sample_bytes;
+    const int left = clamp(-job->step_x, 0, job->width), right = clamp(src->width - job->step_x, left, job->width);
+    for (int v = band * BAND_ROWS; v < job->height && v < (band + 1) * BAND_ROWS; v++) {
+        const uint8_t *from = src->data + clamp(v + job->step_y, 0, src->height - 1) * src->stride;
+        uint8_t *to = job->dst + v * job->dst_stride;
+        repeat(to, from, left, bytes);
+        if (right > left)
+            memcpy(to + left * bytes, from + (left + job->step_x) * bytes, (size_t)((right - left) * bytes));
+        repeat(to + right * bytes, from + (src->width - 1) * bytes, job->width - right, bytes);
+    }
+}
+
 /* The source that a run some rows further down will read is fetched while this one is rendered: tiles are too narrow
  * for the processor to guess it. */
 static void fetch_ahead(const PlaneJob *job, const int32_t *x, const int32_t *y, int count)
@@ -136,7 +185,10 @@ static void render_part(void *context, int index)
     int plane = 0;
     for (; index >= job->plane[plane].bands; plane++)
         index -= job->plane[plane].bands;
-    render_band(&job->plane[plane], job->kernel, index);
+    if (job->plane[plane].copies)
+        copy_band(&job->plane[plane], index);
+    else
+        render_band(&job->plane[plane], job->kernel, index);
 }
 
 static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4],
@@ -165,6 +217,8 @@ static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *co
             .sample_bytes = components * l1l2_format_bytes(format),
             .run = find_run(cfg, w->kernel.taps, components),
         };
+        if (!map->mesh)
+            find_step(plane);
         plane->bands = (plane->height + BAND_ROWS - 1) / BAND_ROWS;
         bands += plane->bands;
     }

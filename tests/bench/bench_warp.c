@@ -72,7 +72,9 @@ static void bench_copy(const L1L2FormatInfo *format, const Picture *src, Picture
     print_times("memcpy", ms);
 }
 
-static void bench_kernel(const L1L2WarpConfig *cfg, const char *name, bool by_mesh, const Picture *src, Picture *dst)
+typedef enum Way { AFFINE, MESH, IDENTITY } Way;
+
+static void bench_kernel(const L1L2WarpConfig *cfg, const char *name, Way way, const Picture *src, Picture *dst)
 {
     L1L2Warp *warp;
     L1L2WarpMesh mesh;
@@ -82,8 +84,10 @@ static void bench_kernel(const L1L2WarpConfig *cfg, const char *name, bool by_me
     for (int t = -2; t < FRAMES; t++) {
         const double angle = 0.0174 * sin(0.7 * t), zoom = 0.9;
         const L1L2WarpMap map = {
-            .affine = l1l2_mat_similarity(zoom * cos(angle), zoom * sin(angle), 5.0 * sin(t), 5.0 * cos(t)),
-            .mesh = by_mesh ? &mesh : NULL,
+            .affine = way == IDENTITY
+                ? l1l2_mat_identity()
+                : l1l2_mat_similarity(zoom * cos(angle), zoom * sin(angle), 5.0 * sin(t), 5.0 * cos(t)),
+            .mesh = way == MESH ? &mesh : NULL,
         };
         l1l2_warp_mesh_set(&mesh, &map.affine);
         const int64_t start = l1l2_clock_ns();
@@ -92,8 +96,8 @@ static void bench_kernel(const L1L2WarpConfig *cfg, const char *name, bool by_me
             ms[t] = (double)(l1l2_clock_ns() - start) * 1e-6;
     }
     char what[64];
-    snprintf(what, sizeof what, "%s%s%s, %d thread%s", name, by_mesh ? ", mesh" : "", cfg->plain ? ", plain C" : "",
-             cfg->pool ? 2 : 1, cfg->pool ? "s" : "");
+    snprintf(what, sizeof what, "%s%s%s, %d thread%s", name,
+             way == MESH ? ", mesh" : way == IDENTITY ? ", identity" : "", cfg->plain ? ", plain C" : "", cfg->pool ? 2 : 1, cfg->pool ? "s" : "");
     print_times(what, ms);
     l1l2_warp_mesh_clear(&mesh);
     l1l2_warp_free(warp);
@@ -112,9 +116,11 @@ static void bench(L1L2StabFormat id, int width, int height)
             const L1L2WarpConfig cfg = {.format = format, .in_width = width, .in_height = height, .out_width = width,
                                         .out_height = height, .interpolation = (L1L2StabInterpolation)k,
                                         .pool = way % 2 ? pool : NULL, .plain = way / 2};
-            bench_kernel(&cfg, kernels[k], false, &src, &dst);
+            bench_kernel(&cfg, kernels[k], AFFINE, &src, &dst);
             if (way == 0)
-                bench_kernel(&cfg, kernels[k], true, &src, &dst);
+                bench_kernel(&cfg, kernels[k], MESH, &src, &dst);
+            if (way == 0 && k == L1L2STAB_INTERPOLATION_BICUBIC)
+                bench_kernel(&cfg, kernels[k], IDENTITY, &src, &dst);
         }
     l1l2_pool_free(pool);
     free_picture(&src);

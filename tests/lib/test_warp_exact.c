@@ -60,6 +60,52 @@ START_TEST(whole_steps_copy_and_repeat_the_edge)
 }
 END_TEST
 
+/* A mesh is weighed, an affine map of whole steps copied. */
+START_TEST(copied_steps_are_what_weighing_gives)
+{
+    if (is_packed(_i))
+        return;
+    static const int steps[][2] = {{0, 0}, {4, -2}, {-8, 8}, {-1, 3}, {60, 0}, {-400, 300}};
+    Picture src = picture_new((L1L2StabFormat)_i, 45, 27), copied = picture_new((L1L2StabFormat)_i, 37, 31);
+    Picture weighed = picture_new((L1L2StabFormat)_i, 37, 31);
+    picture_randomize(&src, 6);
+    L1L2WarpMesh mesh;
+    ck_assert(l1l2_warp_mesh_init(&mesh, 37, 31));
+    for (size_t k = 0; k < sizeof steps / sizeof steps[0]; k++)
+        for (int kernel = 0; kernel < KERNELS; kernel++) {
+            L1L2WarpConfig cfg = warp_config(&src, &copied);
+            cfg.interpolation = (L1L2StabInterpolation)kernel;
+            const L1L2WarpMap map = {.affine = l1l2_mat_translation(steps[k][0], steps[k][1])};
+            l1l2_warp_mesh_set(&mesh, &map.affine);
+            warp_picture_by(&cfg, &map, &src, &copied);
+            warp_picture_by(&cfg, &(L1L2WarpMap){.mesh = &mesh}, &src, &weighed);
+            assert_same_picture(&copied, &weighed);
+            assert_guards_untouched(&copied);
+        }
+    l1l2_warp_mesh_clear(&mesh);
+    picture_free(&src);
+    picture_free(&copied);
+    picture_free(&weighed);
+}
+END_TEST
+
+/* In step at the left side, a quarter of a sample out of it at the right one. */
+START_TEST(nearly_whole_steps_are_not_copied)
+{
+    Picture src = picture_new(L1L2STAB_FORMAT_GRAY8, 1200, 8), dst = picture_new(L1L2STAB_FORMAT_GRAY8, 1200, 8);
+    for (int v = 0; v < src.height; v++)
+        for (int u = 0; u < src.width; u++)
+            set_level(&src, 0, u, v, 0, u % 2 * 255);
+    const L1L2WarpConfig cfg = warp_config(&src, &dst);
+    const L1L2Mat map = l1l2_mat_similarity(1.0 + 0.25 / 1200.0, 0.0, 0.125, 0.0);
+    warp_picture(&cfg, &map, &src, &dst);
+    ck_assert_int_lt(abs(level(&dst, 0, 2, 4, 0) - level(&src, 0, 2, 4, 0)), 8);
+    ck_assert_int_gt(abs(level(&dst, 0, 1190, 4, 0) - level(&src, 0, 1190, 4, 0)), 32);
+    picture_free(&src);
+    picture_free(&dst);
+}
+END_TEST
+
 START_TEST(half_a_turn_reverses)
 {
     if (is_packed(_i))
@@ -284,6 +330,8 @@ int main(void)
     TCase *tc = tcase_create("exact");
     tcase_add_loop_test(tc, the_identity_copies, first, end);
     tcase_add_loop_test(tc, whole_steps_copy_and_repeat_the_edge, first, end);
+    tcase_add_loop_test(tc, copied_steps_are_what_weighing_gives, first, end);
+    tcase_add_test(tc, nearly_whole_steps_are_not_copied);
     tcase_add_loop_test(tc, half_a_turn_reverses, first, end);
     tcase_add_loop_test(tc, a_flat_picture_stays_flat, first, end);
     tcase_add_loop_test(tc, any_number_of_threads_and_plain_c_give_the_same_bytes, first, end);

@@ -97,7 +97,8 @@ static void bench_kernel(const L1L2WarpConfig *cfg, const char *name, Way way, c
     }
     char what[64];
     snprintf(what, sizeof what, "%s%s%s, %d thread%s", name,
-             way == MESH ? ", mesh" : way == IDENTITY ? ", identity" : "", cfg->plain ? ", plain C" : "", cfg->pool ? 2 : 1, cfg->pool ? "s" : "");
+             way == MESH ? ", mesh" : way == IDENTITY ? ", identity" : "", cfg->plain ? ", plain C" : "",
+             cfg->pool ? 2 : 1, cfg->pool ? "s" : "");
     print_times(what, ms);
     l1l2_warp_mesh_clear(&mesh);
     l1l2_warp_free(warp);

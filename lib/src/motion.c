@@ -71,7 +71,11 @@ L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
     const double pixel = 1.0 / hypot(m->width, m->height);
     m->voters = (L1L2Votes){.half_w = half_w, .half_h = half_h};
     m->overlay = (L1L2Overlay){.half_w = half_w, .half_h = half_h, .pixel = pixel};
-    m->ladder = (L1L2Ladder){.wanted = cfg->model, .threshold = inlier_px * pixel};
+    /* Where the picture moves as a whole is best told by a similarity: of a picture that turns, translations agree with
+     * one part now and with another then. */
+    const bool translation = cfg->model == L1L2STAB_MOTION_MODEL_TRANSLATION;
+    m->ladder = (L1L2Ladder){.wanted = translation ? L1L2STAB_MOTION_MODEL_SIMILARITY : cfg->model,
+                             .threshold = inlier_px * pixel};
     /* 0.4 of the distance of as many points on a square grid. */
     m->distance_px = fmax(0.4 * sqrt((double)m->width * m->height / MAX_POINTS), min_distance_px);
     m->distance_px = fmin(m->distance_px, max_distance_px);
@@ -265,8 +269,10 @@ static void fit(L1L2Motion *m, L1L2MotionResult *out)
         start_shot(m, out, "a dissolve");
         return;
     }
-    out->F = rung.F;
+    out->F = l1l2_mat_reduce(&rung.F, l1l2_mat_dim(m->cfg.model));
     out->model = rung.model;
+    if (m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION && rung.model == L1L2STAB_MODEL_SIMILARITY)
+        out->model = L1L2STAB_MODEL_TRANSLATION;
     out->tracks = count;
     out->inliers = rung.inliers;
     out->quality = rung.quality;

@@ -70,6 +70,7 @@ static double compress(double value, const Range *range, double half)
     return fmin(fmax(value, -half), half);
 }
 
+#ifndef NDEBUG
 /* Samples lie between nodes: none is outside the source if no node is. */
 static bool inside(const L1L2WarpMesh *mesh, double half_w, double half_h)
 {
@@ -78,6 +79,7 @@ static bool inside(const L1L2WarpMesh *mesh, double half_w, double half_h)
             return false;
     return true;
 }
+#endif
 
 double l1l2_wobble_mesh_set(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2ResidualShape *shape,
                             const L1L2Residual *residual, int width, int height)

@@ -117,6 +117,17 @@ L1L2Mat l1l2_mat_mix(const L1L2Mat *a, const L1L2Mat *b, double weight)
     return out;
 }
 
+static int along(double at, double half, int cells)
+{
+    const double cell = floor((at / half + 1.0) * 0.5 * cells);
+    return (int)fmin(fmax(cell, 0.0), cells - 1.0);
+}
+
+int l1l2_cell_of(L1L2Point p, double half_w, double half_h, int columns, int rows)
+{
+    return along(p.y, half_h, rows) * columns + along(p.x, half_w, columns);
+}
+
 double l1l2_mat_corner_distance(const L1L2Mat *a, const L1L2Mat *b, double half_w, double half_h)
 {
     double worst = 0.0;

@@ -66,6 +66,9 @@ L1L2Mat l1l2_mat_rescale(L1L2Mat m, double factor);
  * does this: affine maps, and projective ones with m[8] = 1 and a positive denominator there. */
 L1L2Mat l1l2_mat_mix(const L1L2Mat *a, const L1L2Mat *b, double weight);
 
+/* Which of columns x rows cells of the frame p lies in, row by row; points outside count to the nearest. */
+int l1l2_cell_of(L1L2Point p, double half_w, double half_h, int columns, int rows);
+
 /* The largest distance between the images of the four corners (+-half_w, +-half_h) under a and b. */
 double l1l2_mat_corner_distance(const L1L2Mat *a, const L1L2Mat *b, double half_w, double half_h);
 

@@ -232,6 +232,10 @@ static void fit_residual(L1L2Motion *m, L1L2Rung *rung, L1L2MotionResult *out)
     for (int division = 0; division < L1L2_DIVISIONS && found; division++)
         if (!explains(&out->residual, division, enough_explained))
             return;
+    if (!found) { /* what is not trusted goes by the wide similarity */
+        memcpy(m->inlier, agrees, sizeof agrees);
+        memcpy(m->core, agrees, sizeof agrees);
+    }
     for (int k = 0; k < n; k++)
         m->inlier[from[k]] = m->core[from[k]] = agreeing[k];
     if (!found || (inliers >= most * count && rung->inliers < few * inliers)) {

@@ -128,13 +128,12 @@ static bool stands(const L1L2Ladder *l, L1L2StabMotionModel rung, const L1L2Vote
                    const bool *inlier, const L1L2Rung *r)
 {
     if (rung == L1L2STAB_MOTION_MODEL_TRANSLATION) {
-        const double share = l->wanted == rung ? min_inlier_share : min_share_fallback;
-        return r->inliers >= min_inliers_translation && r->inliers >= share * count &&
+        return r->inliers >= min_inliers_translation && r->inliers >= min_share_fallback * count &&
                spread(&r->F, pairs, inlier, count) <= max_spread * wider * l->threshold;
     }
     return r->inliers >= min_inliers && r->inliers >= min_inlier_share * count && plausible(&r->F) &&
            (rung == L1L2STAB_MOTION_MODEL_SIMILARITY ||
-            l1l2_votes_coverage(v, pairs, inlier, count) >= full_coverage);
+            l1l2_votes_coverage(v->half_w, v->half_h, pairs, inlier, count) >= full_coverage);
 }
 
 /* A rung above the last one waits until it has borne for some frames. */
@@ -155,26 +154,36 @@ static double votes_of(const double *votes, const bool *inlier, int count)
     return sum;
 }
 
+/* The motion of the pairs that `of` names. agreeing: `count` flags out. Returns how many agree. */
+static int motion_among(L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2Say say, const bool *of, int count,
+                        double threshold, L1L2Rng *rng, bool *agreeing, L1L2Mat *F)
+{
+    L1L2Pair some[L1L2_RANSAC_MAX_PAIRS] = {0};
+    double votes[L1L2_RANSAC_MAX_PAIRS], weights[L1L2_RANSAC_MAX_PAIRS];
+    bool inlier[L1L2_RANSAC_MAX_PAIRS];
+    int n = 0;
+    for (int i = 0; i < count; i++)
+        if (of[i])
+            some[n] = pairs[i], votes[n] = say.votes[i], weights[n++] = say.weights[i];
+    const int inliers = l1l2_ransac(model, some, (L1L2Say){votes, weights}, n, threshold, rng, inlier, F);
+    for (int i = 0, k = 0; i < count; i++)
+        agreeing[i] = of[i] && inlier[k++];
+    return inliers;
+}
+
 /* The best motion among those that do not agree with F. rival: `count` flags out. Returns how far it is from F where it
  * is measured: 0 where there is none or it is the same, 1 for another thing altogether. */
-static double find_rival(const L1L2Ladder *l, const L1L2Mat *F, const L1L2Pair *pairs, const double *votes,
-                         const bool *inlier, int count, L1L2Rng *rng, bool *rival)
+static double find_rival(const L1L2Ladder *l, const L1L2Mat *F, const L1L2Pair *pairs, L1L2Say say, const bool *inlier,
+                         int count, L1L2Rng *rng, bool *rival)
 {
-    L1L2Pair other[L1L2_RANSAC_MAX_PAIRS] = {0};
-    double other_votes[L1L2_RANSAC_MAX_PAIRS] = {0};
-    bool agreeing[L1L2_RANSAC_MAX_PAIRS];
+    bool outlier[L1L2_RANSAC_MAX_PAIRS] = {false};
     L1L2Mat G;
-    int others = 0;
     for (int i = 0; i < count; i++)
-        if (!inlier[i])
-            other[others] = pairs[i], other_votes[others++] = votes[i];
-    const L1L2Say say = {other_votes, NULL};
-    const int inliers = l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, other, say, others, l->threshold, rng, agreeing,
-                                    &G);
-    if (inliers < min_rival_inliers || spread(&G, other, agreeing, others) > max_spread * l->threshold)
+        outlier[i] = !inlier[i];
+    const int inliers = motion_among(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, say, outlier, count, l->threshold, rng,
+                                     rival, &G);
+    if (inliers < min_rival_inliers || spread(&G, pairs, rival, count) > max_spread * l->threshold)
         return 0.0;
-    for (int i = 0, k = 0; i < count; i++)
-        rival[i] = !inlier[i] && agreeing[k++];
     return fmin(1.0, spread(F, pairs, rival, count) / (far_apart * l->threshold));
 }
 
@@ -187,7 +196,7 @@ static double quality(const L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat *F,
     const double mine = votes_of(say.votes, inlier, count), all = votes_of(say.votes, NULL, count);
     double apart = 0.0;
     if (all - mine >= min_rival_share * all)
-        apart = find_rival(l, F, pairs, say.votes, inlier, count, rng, rival);
+        apart = find_rival(l, F, pairs, say, inlier, count, rng, rival);
     for (int i = 0; i < count; i++)
         standing[i] = say.votes[i] / say.weights[i];
     for (int memory = 1; memory >= 0; memory--) {
@@ -197,24 +206,7 @@ static double quality(const L1L2Ladder *l, const L1L2Votes *v, const L1L2Mat *F,
         if (memory)
             *ambiguous = least < min_quality;
     }
-    return least * fmin(1.0, l1l2_votes_coverage(v, pairs, inlier, count) / full_coverage);
-}
-
-/* The tightest motion of the pairs that `of` names: its votes, and in `agreeing` whose it is. */
-static double tight_motion(const L1L2Ladder *l, L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2Say say,
-                           const bool *of, int count, L1L2Rng *rng, bool *agreeing, L1L2Mat *F)
-{
-    L1L2Pair near[L1L2_RANSAC_MAX_PAIRS] = {0};
-    double votes[L1L2_RANSAC_MAX_PAIRS], weights[L1L2_RANSAC_MAX_PAIRS];
-    bool tight[L1L2_RANSAC_MAX_PAIRS];
-    int n = 0;
-    for (int i = 0; i < count; i++)
-        if (of[i])
-            near[n] = pairs[i], votes[n] = say.votes[i], weights[n++] = say.weights[i];
-    l1l2_ransac(model, near, (L1L2Say){votes, weights}, n, sharper * l->threshold, rng, tight, F);
-    for (int i = 0, k = 0; i < count; i++)
-        agreeing[i] = of[i] && tight[k++];
-    return votes_of(votes, tight, n);
+    return least * fmin(1.0, l1l2_votes_coverage(v->half_w, v->half_h, pairs, inlier, count) / full_coverage);
 }
 
 /* The inliers may be of two motions, each of which agrees far better than the threshold asks: a background, and a
@@ -227,12 +219,15 @@ static void sharpen(const L1L2Ladder *l, L1L2StabMotionModel model, const L1L2Pa
     L1L2Mat sharp, other;
     memcpy(core, inlier, (size_t)count * sizeof *core);
     const double all = votes_of(say.votes, inlier, count);
-    const double firsts = tight_motion(l, model, pairs, say, inlier, count, rng, first, &sharp);
+    const double tight = sharper * l->threshold;
+    motion_among(model, pairs, say, inlier, count, tight, rng, first, &sharp);
+    const double firsts = votes_of(say.votes, first, count);
     if (firsts < min_core * all || firsts > all - min_rest * all)
         return;
     for (int i = 0; i < count; i++)
         rest[i] = inlier[i] && !first[i];
-    if (tight_motion(l, model, pairs, say, rest, count, rng, second, &other) < min_second * (all - firsts) ||
+    motion_among(model, pairs, say, rest, count, tight, rng, second, &other);
+    if (votes_of(say.votes, second, count) < min_second * (all - firsts) ||
         spread(&sharp, pairs, second, count) < min_apart * l->threshold)
         return;
     memcpy(core, first, (size_t)count * sizeof *core);
@@ -245,6 +240,7 @@ L1L2Rung l1l2_ladder_measure(L1L2Ladder *l, const L1L2Votes *v, const L1L2Pair *
                              bool selected, L1L2Rng *rng, bool *inlier, bool *core)
 {
     L1L2Rung r = {.model = L1L2STAB_MODEL_NONE, .F = l1l2_mat_identity()};
+    memset(core, false, (size_t)count * sizeof *core);
     for (int rung = (int)l->wanted; rung >= L1L2STAB_MOTION_MODEL_TRANSLATION; rung--) {
         const L1L2StabMotionModel model = (L1L2StabMotionModel)rung;
         const double threshold = (rung == L1L2STAB_MOTION_MODEL_TRANSLATION ? wider : 1.0) * l->threshold;

@@ -16,7 +16,7 @@
 #include "motion_votes.h"
 
 typedef struct L1L2Ladder {
-    L1L2StabMotionModel wanted; /* the highest rung */
+    L1L2StabMotionModel wanted; /* the highest rung: similarity or affine */
     double threshold;           /* of the inliers, in the pairs' unit */
     L1L2StabMotionModel rung;   /* that was borne last */
     int waiting;                /* frames in a row that a higher one was */

@@ -20,9 +20,7 @@ static int clamp(int v, int low, int high)
 
 static int cell_of(const L1L2Overlay *o, L1L2Point p)
 {
-    const int x = (int)floor((p.x / o->half_w + 1.0) * 0.5 * L1L2_MASK_W);
-    const int y = (int)floor((p.y / o->half_h + 1.0) * 0.5 * L1L2_MASK_H);
-    return clamp(y, 0, L1L2_MASK_H - 1) * L1L2_MASK_W + clamp(x, 0, L1L2_MASK_W - 1);
+    return l1l2_cell_of(p, o->half_w, o->half_h, L1L2_MASK_W, L1L2_MASK_H);
 }
 
 void l1l2_overlay_learn(L1L2Overlay *o, const L1L2Pair *pairs, const bool *inlier, int count, const L1L2Mat *F)

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "motion_votes.h"
 #include "ransac_fit.h"
 
 enum { N = L1L2_RESIDUAL_SIZE };
@@ -17,28 +18,12 @@ static const double usual_count = 200.0; /* points for which these hold */
 static const double scale[] = {1.0, 1.0, 1.0, 0.7, 0.7};
 enum { ROUNDS = sizeof scale / sizeof *scale };
 
-/* The points have to lie in so many of the cells of a coarse grid (MediaPipe asks for 30 %). */
-enum { GRID_X = 8, GRID_Y = 6 };
-static const double min_cells = 0.3;
+/* The points have to lie in so many of the frame's cells (MediaPipe asks for 30 %). */
+static const double min_coverage = 0.3;
 
 typedef struct Normal {
     double A[N][N], b[N]; /* lower triangle */
 } Normal;
-
-static bool covered(const L1L2ResidualShape *shape, const L1L2Pair *pairs, int count, const bool *inlier)
-{
-    bool seen[GRID_Y][GRID_X] = {{false}};
-    int cells = 0;
-    for (int i = 0; i < count; i++) {
-        const int x = (int)((pairs[i].from.x / shape->half_w + 1.0) * 0.5 * GRID_X);
-        const int y = (int)((pairs[i].from.y / shape->half_h + 1.0) * 0.5 * GRID_Y);
-        if (!inlier[i] || x < 0 || x >= GRID_X || y < 0 || y >= GRID_Y || seen[y][x])
-            continue;
-        seen[y][x] = true;
-        cells++;
-    }
-    return cells >= min_cells * GRID_X * GRID_Y;
-}
 
 static void regularise(const L1L2ResidualShape *shape, int count, Normal *normal)
 {
@@ -133,8 +118,8 @@ static L1L2Point left_by(const Points *points, const L1L2Residual *fit, int i, L
     return (L1L2Point){moved->x - r.x, moved->y - r.y};
 }
 
-/* One round, with weights by what `fit` leaves of them; where there is no fit
- * yet, all of `inlier` weigh the same, and what moves by itself has no say in the beginning. */
+/* One round, with weights by what `fit` leaves of them; where there is no fit yet, all of `inlier` weigh the same, and
+ * what moves by itself has no say in the beginning. */
 static bool refit(const Points *points, double width, const bool *inlier, const L1L2Residual *fit, L1L2Residual *out)
 {
     const int size = l1l2_residual_size(points->shape);
@@ -208,7 +193,8 @@ int l1l2_motion_residual_fit(const L1L2ResidualShape *shape, const L1L2Pair *pai
     const Points points = {shape, pairs, F, count};
     memset(step, 0, sizeof *step);
     L1L2Residual fit = {{0.0}};
-    bool ok = covered(shape, pairs, count, inlier) && refit(&points, 0.0, inlier, &fit, &step->r);
+    bool ok = l1l2_votes_coverage(shape->half_w, shape->half_h, pairs, inlier, count) >= min_coverage &&
+              refit(&points, 0.0, inlier, &fit, &step->r);
     for (int k = 0; k < ROUNDS && ok; k++) {
         fit = step->r;
         ok = refit(&points, scale[k] * threshold, NULL, &fit, &step->r);

@@ -14,16 +14,9 @@ static const double age_factor = 3.0;
 /* A cell's vote where nothing moved with the camera lately; more than 0, so that it can come to do so. */
 static const double least_trust = 0.2, learning_rate = 0.15;
 
-static int clamp(int v, int high)
-{
-    return v < 0 ? 0 : v > high ? high : v;
-}
-
 static int cell_of(const L1L2Votes *v, L1L2Point p)
 {
-    const int x = (int)floor((p.x / v->half_w + 1.0) * 0.5 * CELLS_X);
-    const int y = (int)floor((p.y / v->half_h + 1.0) * 0.5 * CELLS_Y);
-    return clamp(y, CELLS_Y - 1) * CELLS_X + clamp(x, CELLS_X - 1);
+    return l1l2_cell_of(p, v->half_w, v->half_h, CELLS_X, CELLS_Y);
 }
 
 static double place_factor(int cell)
@@ -72,13 +65,13 @@ double l1l2_votes_trust(const L1L2Votes *v, L1L2Point p)
     return v->trust[cell_of(v, p)];
 }
 
-double l1l2_votes_coverage(const L1L2Votes *v, const L1L2Pair *pairs, const bool *inlier, int count)
+double l1l2_votes_coverage(double half_w, double half_h, const L1L2Pair *pairs, const bool *inlier, int count)
 {
     bool covered[CELLS] = {false};
     int cells = 0;
     for (int i = 0; i < count; i++)
         if (inlier[i])
-            covered[cell_of(v, pairs[i].from)] = true;
+            covered[l1l2_cell_of(pairs[i].from, half_w, half_h, CELLS_X, CELLS_Y)] = true;
     for (int cell = 0; cell < CELLS; cell++)
         cells += covered[cell];
     return (double)cells / CELLS;

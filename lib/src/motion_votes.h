@@ -36,6 +36,6 @@ void l1l2_votes_learn(L1L2Votes *v, const L1L2Pair *pairs, const bool *inlier, i
 double l1l2_votes_trust(const L1L2Votes *v, L1L2Point p);
 
 /* Part of the frame's cells in which an inlier lies, [0, 1]. */
-double l1l2_votes_coverage(const L1L2Votes *v, const L1L2Pair *pairs, const bool *inlier, int count);
+double l1l2_votes_coverage(double half_w, double half_h, const L1L2Pair *pairs, const bool *inlier, int count);
 
 #endif

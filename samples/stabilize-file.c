@@ -39,6 +39,7 @@
 #define MAX_FRAME_RATE 1000 /* Hz */
 #define PROGRESS_TERMINAL_MS 500
 #define PROGRESS_LOG_MS 10000
+#define FIND_STREAMS_S 19
 
 typedef struct App {
     char *in, *out;
@@ -261,6 +262,11 @@ static gboolean show_progress(gpointer data)
     const double seconds = (double)(g_get_monotonic_time() - app->started_us) / G_USEC_PER_SEC;
     char percent[16] = "";
 
+    /* decodebin (1.22) now and then loses a demuxer's error that comes before it has the demuxer in place. */
+    if (!app->has_video && !app->has_audio && seconds > FIND_STREAMS_S) {
+        fail(app, "%s: no stream was found in it: is it complete?", app->in);
+        return G_SOURCE_REMOVE;
+    }
     if (frames > 0 && gst_element_query_duration(app->source, GST_FORMAT_TIME, &duration) && duration > 0) {
         const double reached = (double)g_atomic_int_get(&app->reached_ms) * GST_MSECOND / (double)duration;
         g_snprintf(percent, sizeof percent, "%3.0f %%, ", MIN(100.0, 100.0 * reached));

@@ -5,6 +5,10 @@
 
 #include <l1l2stab/l1l2stab.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { L1L2_MAX_PLANES = 4 };
 
 typedef struct L1L2FormatInfo {
@@ -41,5 +45,9 @@ static inline int l1l2_plane_size(int size, int log2_sub)
 {
     return (size + (1 << log2_sub) - 1) >> log2_sub;
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

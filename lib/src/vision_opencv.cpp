@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <new>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "log.h"
+#include "scale.h"
 
 namespace {
 
@@ -51,12 +53,14 @@ constexpr int kMinSide = 32;
 
 const cv::Size window_size(kWindow, kWindow);
 
+using Scaler = std::unique_ptr<L1L2Scaler, decltype(&l1l2_scale_free)>;
+
 } // namespace
 
 struct L1L2Vision {
     L1L2VisionConfig cfg;
     cv::Size size;
-    cv::Mat scaled, mixed;                   /* what becomes the grey picture: all components, one component */
+    Scaler to_grey{nullptr, l1l2_scale_free}, to_thumbnail{nullptr, l1l2_scale_free};
     cv::Mat grey, previous_grey;
     std::vector<cv::Mat> pyramid, previous_pyramid;
     int pictures = 0;                        /* taken since reset, at most 2 matter */
@@ -97,21 +101,12 @@ int scaled_side(const L1L2VisionConfig &cfg, int side)
     return std::max(cvRound(side * scale), std::min(side, kMinSide));
 }
 
-/* Downscaled by area, so that noise averages out and nothing aliases. Deep pictures are cut to 8 bits after that: what
- * averages out is not lost. */
-void scale_to_grey(L1L2Vision *v, const cv::Mat &frame)
+Scaler scaler(const L1L2FormatInfo *format, cv::Size from, cv::Size to)
 {
-    const L1L2FormatInfo *format = v->cfg.format;
-    cv::Mat &scaled = frame.type() == CV_8UC1 ? v->grey : v->scaled;
-    if (frame.size() == v->size)
-        frame.copyTo(scaled);
-    else
-        cv::resize(frame, scaled, v->size, 0, 0, cv::INTER_AREA);
-    if (frame.channels() > 1)
-        cv::transform(scaled, v->mixed, cv::Mat(1, frame.channels(), CV_64F, const_cast<double *>(format->grey)));
-    if (frame.type() != CV_8UC1)
-        (frame.channels() > 1 ? v->mixed : scaled)
-            .convertTo(v->grey, CV_8U, std::ldexp(1.0, 8 - format->depth - format->shift));
+    Scaler made(l1l2_scale_new(format, from.width, from.height, to.width, to.height), l1l2_scale_free);
+    if (!made)
+        throw std::bad_alloc();
+    return made;
 }
 
 bool inside(const L1L2Vision *v, cv::Point2f p)
@@ -243,10 +238,14 @@ L1L2StabResult l1l2_vision_create(L1L2Vision **out, const L1L2VisionConfig *cfg)
 {
     *out = nullptr;
     return guard(cfg->log, [&] {
-        *out = new L1L2Vision;
-        (*out)->cfg = *cfg;
-        (*out)->size = cv::Size(scaled_side(*cfg, cfg->width), scaled_side(*cfg, cfg->height));
-        (*out)->active = cv::Rect(cv::Point(), (*out)->size);
+        std::unique_ptr<L1L2Vision> v(new L1L2Vision);
+        v->cfg = *cfg;
+        v->size = cv::Size(scaled_side(*cfg, cfg->width), scaled_side(*cfg, cfg->height));
+        v->active = cv::Rect(cv::Point(), v->size);
+        v->to_grey = scaler(cfg->format, cv::Size(cfg->width, cfg->height), v->size);
+        v->to_thumbnail = scaler(l1l2_format_info(L1L2STAB_FORMAT_GRAY8), v->size,
+                                 cv::Size(L1L2_THUMBNAIL_W, L1L2_THUMBNAIL_H));
+        *out = v.release();
     });
 }
 
@@ -270,18 +269,10 @@ void l1l2_vision_size(const L1L2Vision *v, int *width, int *height)
 L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t stride)
 {
     return guard(v->cfg.log, [&] {
-        const L1L2FormatInfo *format = v->cfg.format;
-        const int type = CV_MAKETYPE(format->depth > 8 ? CV_16U : CV_8U, l1l2_format_pixel_components(format));
         cv::swap(v->grey, v->previous_grey);
         std::swap(v->pyramid, v->previous_pyramid);
-        if (stride > 0) {
-            /* The header over the caller's memory is only read from. */
-            scale_to_grey(v, cv::Mat(v->cfg.height, v->cfg.width, type, const_cast<uint8_t *>(data), size_t(stride)));
-        } else { /* bottom up: OpenCV's steps are positive, so the picture is taken upside down and turned over */
-            const uint8_t *last = data + stride * (v->cfg.height - 1);
-            scale_to_grey(v, cv::Mat(v->cfg.height, v->cfg.width, type, const_cast<uint8_t *>(last), size_t(-stride)));
-            cv::flip(v->grey, v->grey, 0);
-        }
+        v->grey.create(v->size, CV_8U);
+        l1l2_scale_run(v->to_grey.get(), data, stride, v->grey.data, ptrdiff_t(v->grey.step));
         cv::buildOpticalFlowPyramid(v->grey, v->pyramid, window_size, kLevels);
         v->pictures = std::min(v->pictures + 1, 2);
         if (v->pictures == 2)
@@ -292,8 +283,8 @@ L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t
 L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail)
 {
     return guard(v->cfg.log, [&] {
-        cv::Mat out(L1L2_THUMBNAIL_H, L1L2_THUMBNAIL_W, CV_8U, thumbnail->level);
-        cv::resize(v->grey, out, out.size(), 0, 0, cv::INTER_AREA);
+        l1l2_scale_run(v->to_thumbnail.get(), v->grey.data, ptrdiff_t(v->grey.step), thumbnail->level,
+                       L1L2_THUMBNAIL_W);
     });
 }
 

@@ -47,10 +47,15 @@ static void advance_flat(int width, int height, int components, uint8_t level)
     free(data);
 }
 
-static void advance_synth(const Synth *s, int t, SynthPicture *p)
+/* A new picture: frame t of a clip. */
+static void advance_synth(const SynthConfig *cfg, int t)
 {
-    synth_render(s, t, p->format, p->data, p->stride);
-    ck_assert_int_eq(l1l2_vision_advance(vision, p->data[0], p->stride[0]), L1L2STAB_OK);
+    Synth *s = synth_new(cfg);
+    SynthPicture p = synth_picture_new(L1L2STAB_FORMAT_GRAY8, cfg->width, cfg->height);
+    synth_render(s, t, p.format, p.data, p.stride);
+    ck_assert_int_eq(l1l2_vision_advance(vision, p.data[0], p.stride[0]), L1L2STAB_OK);
+    synth_picture_free(&p);
+    synth_free(s);
 }
 
 static int corners(const L1L2Pixel *taken, int count, L1L2Pixel *out, int capacity)
@@ -82,12 +87,10 @@ END_TEST
 START_TEST(corners_keep_their_distance_from_each_other_and_from_those_taken)
 {
     const SynthConfig cfg = synth_defaults();
-    Synth *s = synth_new(&cfg);
-    SynthPicture p = synth_picture_new(L1L2STAB_FORMAT_GRAY8, cfg.width, cfg.height);
     L1L2Pixel found[2 * POINTS];
     create(cfg.width, cfg.height, L1L2STAB_FORMAT_GRAY8);
-    advance_synth(s, 0, &p);
-    advance_synth(s, 1, &p);
+    advance_synth(&cfg, 0);
+    advance_synth(&cfg, 1);
     const int before = corners(NULL, 0, found, POINTS / 2);
     ck_assert_int_eq(before, POINTS / 2);
     for (int i = 0; i < before; i++) /* tracked points do not lie on pixels */
@@ -100,8 +103,6 @@ START_TEST(corners_keep_their_distance_from_each_other_and_from_those_taken)
         for (int j = 0; j < i; j++)
             ck_assert_float_ge(hypotf(found[i].x - found[j].x, found[i].y - found[j].y), 12.0f);
     }
-    synth_picture_free(&p);
-    synth_free(s);
 }
 END_TEST
 
@@ -109,18 +110,18 @@ START_TEST(points_are_followed_to_where_they_went)
 {
     SynthConfig cfg = synth_defaults();
     cfg.noise = 3.0;
-    Synth *s = synth_new(&cfg);
-    SynthPicture p = synth_picture_new(L1L2STAB_FORMAT_GRAY8, cfg.width, cfg.height);
     L1L2Pixel from[POINTS], to[POINTS];
     bool ok[POINTS];
     create(cfg.width, cfg.height, L1L2STAB_FORMAT_GRAY8);
-    advance_synth(s, 0, &p);
-    advance_synth(s, 1, &p);
+    advance_synth(&cfg, 0);
+    advance_synth(&cfg, 1);
     const int count = corners(NULL, 0, from, POINTS);
     ck_assert_int_eq(count, POINTS);
     ck_assert_int_eq(l1l2_vision_track(vision, from, to, ok, count, 0.5), L1L2STAB_OK);
     double F[9];
+    Synth *s = synth_new(&cfg);
     synth_motion(s, 1, F);
+    synth_free(s);
     int good = 0, near = 0;
     for (int i = 0; i < count; i++) {
         if (!ok[i])
@@ -133,8 +134,6 @@ START_TEST(points_are_followed_to_where_they_went)
     }
     ck_assert_int_ge(good, POINTS * 9 / 10);
     ck_assert_int_ge(near, good * 95 / 100);
-    synth_picture_free(&p);
-    synth_free(s);
 }
 END_TEST
 
@@ -143,13 +142,11 @@ START_TEST(points_that_leave_the_picture_are_not_ok)
     SynthConfig cfg = synth_defaults();
     cfg.shake = cfg.roll = 0.0;
     cfg.pan_x = 30.0;
-    Synth *s = synth_new(&cfg);
-    SynthPicture p = synth_picture_new(L1L2STAB_FORMAT_GRAY8, cfg.width, cfg.height);
     L1L2Pixel from[POINTS], to[POINTS];
     bool ok[POINTS];
     create(cfg.width, cfg.height, L1L2STAB_FORMAT_GRAY8);
-    advance_synth(s, 0, &p);
-    advance_synth(s, 1, &p);
+    advance_synth(&cfg, 0);
+    advance_synth(&cfg, 1);
     const int count = corners(NULL, 0, from, POINTS);
     ck_assert_int_eq(l1l2_vision_track(vision, from, to, ok, count, 0.5), L1L2STAB_OK);
     int left = 0;
@@ -161,23 +158,19 @@ START_TEST(points_that_leave_the_picture_are_not_ok)
         }
     }
     ck_assert_int_gt(left, 0);
-    synth_picture_free(&p);
-    synth_free(s);
 }
 END_TEST
 
 START_TEST(points_that_do_not_come_back_are_not_ok)
 {
-    SynthConfig cfg = synth_defaults();
-    Synth *s = synth_new(&cfg);
-    cfg.seed = 2;
-    Synth *other = synth_new(&cfg);
-    SynthPicture p = synth_picture_new(L1L2STAB_FORMAT_GRAY8, cfg.width, cfg.height);
+    const SynthConfig cfg = synth_defaults();
+    SynthConfig other = cfg;
+    other.seed = 2;
     L1L2Pixel from[POINTS], to[POINTS];
     bool ok[POINTS];
     create(cfg.width, cfg.height, L1L2STAB_FORMAT_GRAY8);
-    advance_synth(s, 0, &p);
-    advance_synth(other, 0, &p); /* nothing in it is of the first picture */
+    advance_synth(&cfg, 0);
+    advance_synth(&other, 0); /* nothing in it is of the first picture */
     const int count = corners(NULL, 0, from, POINTS);
     int strict = 0, lax = 0;
     ck_assert_int_eq(l1l2_vision_track(vision, from, to, ok, count, 0.5), L1L2STAB_OK);
@@ -188,9 +181,6 @@ START_TEST(points_that_do_not_come_back_are_not_ok)
         lax += ok[i];
     ck_assert_int_gt(lax, 100);
     ck_assert_int_lt(strict, lax / 5);
-    synth_picture_free(&p);
-    synth_free(other);
-    synth_free(s);
 }
 END_TEST
 
@@ -209,23 +199,19 @@ END_TEST
 START_TEST(without_two_pictures_there_is_nothing_to_find_or_follow)
 {
     const SynthConfig cfg = synth_defaults();
-    Synth *s = synth_new(&cfg);
-    SynthPicture p = synth_picture_new(L1L2STAB_FORMAT_GRAY8, cfg.width, cfg.height);
     L1L2Pixel at = {100.0f, 100.0f}, to;
     bool ok = true;
     create(cfg.width, cfg.height, L1L2STAB_FORMAT_GRAY8);
     for (int round = 0; round < 2; round++) {
-        advance_synth(s, 0, &p);
+        advance_synth(&cfg, 0);
         ck_assert_int_eq(corners(NULL, 0, &to, 1), 0);
         ck_assert_int_eq(l1l2_vision_track(vision, &at, &to, &ok, 1, 0.5), L1L2STAB_OK);
         ck_assert(!ok);
-        advance_synth(s, 1, &p);
+        advance_synth(&cfg, 1);
         ck_assert_int_eq(corners(NULL, 0, &to, 1), 1);
         ck_assert_int_eq(corners(NULL, 0, &to, 0), 0);
         l1l2_vision_reset(vision);
     }
-    synth_picture_free(&p);
-    synth_free(s);
 }
 END_TEST
 
@@ -290,21 +276,17 @@ START_TEST(small_and_thin_pictures_do_no_harm)
         SynthConfig cfg = synth_defaults();
         cfg.width = sizes[i][0], cfg.height = sizes[i][1];
         cfg.shake = 1.0;
-        Synth *s = synth_new(&cfg);
-        SynthPicture p = synth_picture_new(L1L2STAB_FORMAT_GRAY8, cfg.width, cfg.height);
-        L1L2Pixel from[POINTS], to[POINTS];
+                L1L2Pixel from[POINTS], to[POINTS];
         bool ok[POINTS];
         create(cfg.width, cfg.height, L1L2STAB_FORMAT_GRAY8);
         for (int t = 0; t < 3; t++) {
-            advance_synth(s, t, &p);
+            advance_synth(&cfg, t);
             const int count = corners(NULL, 0, from, POINTS);
             ck_assert_int_eq(l1l2_vision_track(vision, from, to, ok, count, 0.5), L1L2STAB_OK);
         }
         ck_assert_int_eq(messages, 0);
         l1l2_vision_free(vision);
         vision = NULL;
-        synth_picture_free(&p);
-        synth_free(s);
     }
 }
 END_TEST

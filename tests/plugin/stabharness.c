@@ -1,6 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 #include "stabharness.h"
 
+gboolean
+stab_have_elements (const gchar * const *names)
+{
+  gboolean all = TRUE;
+
+  for (; *names; names++) {
+    if (!gst_registry_check_feature_version (gst_registry_get (), *names, 1, 0,
+            0)) {
+      g_print ("skipped: no element %s\n", *names);
+      all = FALSE;
+    }
+  }
+  return all;
+}
+
 GstHarness *
 stab_harness_new (const gchar * caps, const gchar * property, ...)
 {
@@ -106,6 +121,16 @@ stab_frame_new (GstHarness * h, guint index)
   return buffer;
 }
 
+GstBuffer *
+stab_frame_new_at (GstHarness * h, GstClockTime pts, GstClockTime duration)
+{
+  GstBuffer *buffer = stab_frame_new (h, 0);
+
+  GST_BUFFER_PTS (buffer) = pts;
+  GST_BUFFER_DURATION (buffer) = duration;
+  return buffer;
+}
+
 void
 stab_frame_assert_level (GstBuffer * buffer, GstCaps * caps, guint8 level)
 {
@@ -161,6 +186,18 @@ stab_pull_frames (GstHarness * h, guint start, guint n)
     gst_buffer_unref (buffer);
   }
   fail_unless_equals_int (gst_harness_buffers_in_queue (h), 0);
+}
+
+GstClockTime
+stab_position (GstHarness * h)
+{
+  GstQuery *query = gst_query_new_position (GST_FORMAT_TIME);
+  gint64 position;
+
+  fail_unless (gst_pad_peer_query (h->sinkpad, query));
+  gst_query_parse_position (query, NULL, &position);
+  gst_query_unref (query);
+  return position;
 }
 
 static GstPadProbeReturn

@@ -15,6 +15,9 @@ G_BEGIN_DECLS
   "video/x-raw, format=I420, width=64, height=48, framerate=25/1"
 #define FRAME_DURATION (40 * GST_MSECOND)
 
+/* Whether GStreamer has the elements of this NULL-terminated list. Prints that tests are skipped for want of them. */
+gboolean stab_have_elements (const gchar * const *names);
+
 /* The element with these properties (name, value, ..., NULL), playing, with a bus. `caps` may be NULL. */
 GstHarness *stab_harness_new (const gchar * caps, const gchar * property, ...)
     G_GNUC_NULL_TERMINATED;
@@ -30,6 +33,10 @@ GstMessage *stab_harness_message (GstHarness * h, GstMessageType type);
 GstBuffer *stab_frame_new (GstHarness * h, guint index);
 guint8 stab_frame_level (guint index);
 
+/* Frame 0, at another time. */
+GstBuffer *stab_frame_new_at (GstHarness * h, GstClockTime pts,
+    GstClockTime duration);
+
 /* Where component `c` of pixel (x, y), counted in that component's samples, is: one or two bytes. */
 guint8 *stab_frame_component (const GstVideoFrame * frame, guint c, gint x,
     gint y);
@@ -42,6 +49,9 @@ void stab_push_frames (GstHarness * h, guint start, guint n);
 
 /* Pulls n frames, without waiting, that must be `start` and following, and nothing more be there. */
 void stab_pull_frames (GstHarness * h, guint start, guint n);
+
+/* The stream's position as the element tells it downstream. */
+GstClockTime stab_position (GstHarness * h);
 
 /* What has come out since `stab_record_new`, in order: "f3 " for frame 3, the type's name for an event. */
 GString *stab_record_new (GstHarness * h);

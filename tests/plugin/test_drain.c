@@ -126,23 +126,32 @@ GST_START_TEST (a_reconfiguration_that_changes_nothing_does_not_drain)
 
 GST_END_TEST;
 
+/* Pulls frames 0 to n - 1, of which frame `which` alone is marked as discontinuous. */
+static void
+pull_discont (GstHarness * h, guint n, guint which)
+{
+  guint i;
+
+  for (i = 0; i < n; i++) {
+    GstBuffer *buffer = gst_harness_pull (h);
+
+    fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer), i * FRAME_DURATION);
+    fail_unless_equals_int (GST_BUFFER_IS_DISCONT (buffer), i == which);
+    gst_buffer_unref (buffer);
+  }
+}
+
 GST_START_TEST (a_discontinuity_lets_the_old_frames_out_and_marks_the_new_one)
 {
   GstHarness *h = harness_with_frames (5);
   GstBuffer *buffer = stab_frame_new (h, 5);
-  guint i;
 
   GST_BUFFER_FLAG_SET (buffer, GST_BUFFER_FLAG_DISCONT);
   fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
   fail_unless_equals_int (gst_harness_buffers_in_queue (h), 5);
   stab_push_frames (h, 6, 6);
   gst_harness_push_event (h, gst_event_new_eos ());
-  for (i = 0; i < 12; i++) {
-    buffer = gst_harness_pull (h);
-    fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer), i * FRAME_DURATION);
-    fail_unless_equals_int (GST_BUFFER_IS_DISCONT (buffer), i == 5);
-    gst_buffer_unref (buffer);
-  }
+  pull_discont (h, 12, 5);
   stab_harness_free (h);
 }
 
@@ -152,18 +161,13 @@ GST_START_TEST (the_first_frames_discontinuity_is_no_reason_to_mark_others)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GstBuffer *buffer = stab_frame_new (h, 0);
-  guint i;
 
   GST_BUFFER_FLAG_SET (buffer, GST_BUFFER_FLAG_DISCONT);
   gst_harness_push (h, buffer);
   stab_push_frames (h, 1, WINDOW - 2);
   fail_unless_equals_int (gst_harness_buffers_received (h), 0);
   stab_push_frames (h, WINDOW - 1, WINDOW);
-  for (i = 0; i < WINDOW; i++) {
-    buffer = gst_harness_pull (h);
-    fail_unless_equals_int (GST_BUFFER_IS_DISCONT (buffer), i == 0);
-    gst_buffer_unref (buffer);
-  }
+  pull_discont (h, WINDOW, 0);
   stab_harness_free (h);
 }
 
@@ -173,55 +177,38 @@ GST_START_TEST (a_drain_before_the_window_is_full_marks_no_other_frame)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GstBuffer *buffer = stab_frame_new (h, 0);
-  guint i;
 
   GST_BUFFER_FLAG_SET (buffer, GST_BUFFER_FLAG_DISCONT);
   gst_harness_push (h, buffer);
   stab_push_frames (h, 1, 3);
   gst_harness_push_event (h, segment_event (0));
   stab_push_frames (h, 4, WINDOW);
-  for (i = 0; i < 5; i++) {
-    buffer = gst_harness_pull (h);
-    fail_unless_equals_int (GST_BUFFER_IS_DISCONT (buffer), i == 0);
-    gst_buffer_unref (buffer);
-  }
+  pull_discont (h, 5, 0);
   stab_harness_free (h);
 }
 
 GST_END_TEST;
-
-static GstClockTime
-position_of (GstHarness * h)
-{
-  GstQuery *query = gst_query_new_position (GST_FORMAT_TIME);
-  gint64 position;
-
-  fail_unless (gst_pad_peer_query (h->sinkpad, query));
-  gst_query_parse_position (query, NULL, &position);
-  gst_query_unref (query);
-  return position;
-}
 
 GST_START_TEST (the_position_is_that_of_the_last_frame_out)
 {
   GstHarness *h = harness_with_frames (WINDOW - 1);
   GstSegment segment;
 
-  fail_unless_equals_uint64 (position_of (h), 0);
+  fail_unless_equals_uint64 (stab_position (h), 0);
   stab_push_frames (h, WINDOW - 1, 3);
-  fail_unless_equals_uint64 (position_of (h), 3 * FRAME_DURATION);
+  fail_unless_equals_uint64 (stab_position (h), 3 * FRAME_DURATION);
   gst_harness_push_event (h, gst_event_new_eos ());
-  fail_unless_equals_uint64 (position_of (h), (WINDOW + 2) * FRAME_DURATION);
+  fail_unless_equals_uint64 (stab_position (h), (WINDOW + 2) * FRAME_DURATION);
 
   gst_segment_init (&segment, GST_FORMAT_TIME);
   segment.start = segment.position = 50 * FRAME_DURATION;
   segment.time = 70 * FRAME_DURATION;
   gst_harness_push_event (h, gst_event_new_stream_start ("another"));
   gst_harness_push_event (h, gst_event_new_segment (&segment));
-  fail_unless_equals_uint64 (position_of (h), 70 * FRAME_DURATION);
+  fail_unless_equals_uint64 (stab_position (h), 70 * FRAME_DURATION);
   stab_push_frames (h, 50, 2);
   gst_harness_push_event (h, gst_event_new_eos ());
-  fail_unless_equals_uint64 (position_of (h), 72 * FRAME_DURATION);
+  fail_unless_equals_uint64 (stab_position (h), 72 * FRAME_DURATION);
   stab_harness_free (h);
 }
 

@@ -16,13 +16,22 @@ custom_event (GstEventType type)
   return gst_event_new_custom (type, gst_structure_new_empty ("test"));
 }
 
-GST_START_TEST (a_serialized_event_stays_before_its_frame)
+/* `n` frames are held; what comes out from now on is in *out. */
+static GstHarness *
+recorded_harness_new (guint n, GString ** out)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
-  GString *out;
 
-  stab_push_frames (h, 0, 3);
-  out = stab_record_new (h);
+  stab_push_frames (h, 0, n);
+  *out = stab_record_new (h);
+  return h;
+}
+
+GST_START_TEST (a_serialized_event_stays_before_its_frame)
+{
+  GString *out;
+  GstHarness *h = recorded_harness_new (3, &out);
+
   fail_unless (gst_harness_push_event (h, tag_event ("one")));
   fail_unless (gst_harness_push_event (h,
           custom_event (GST_EVENT_CUSTOM_DOWNSTREAM)));
@@ -35,11 +44,9 @@ GST_END_TEST;
 
 GST_START_TEST (an_event_after_the_last_frame_goes_before_the_end)
 {
-  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GString *out;
+  GstHarness *h = recorded_harness_new (2, &out);
 
-  stab_push_frames (h, 0, 2);
-  out = stab_record_new (h);
   gst_harness_push_event (h, tag_event ("one"));
   stab_push_frames (h, 2, 1);
   gst_harness_push_event (h, tag_event ("two"));
@@ -65,11 +72,9 @@ GST_END_TEST;
 
 GST_START_TEST (a_gap_stays_in_its_place_and_ends_no_window)
 {
-  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GString *out;
+  GstHarness *h = recorded_harness_new (3, &out);
 
-  stab_push_frames (h, 0, 3);
-  out = stab_record_new (h);
   gst_harness_push_event (h, gst_event_new_gap (3 * FRAME_DURATION,
           FRAME_DURATION));
   fail_unless_equals_string (out->str, "");
@@ -82,11 +87,9 @@ GST_END_TEST;
 
 GST_START_TEST (in_a_long_gap_the_frames_before_it_go)
 {
-  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GString *out;
+  GstHarness *h = recorded_harness_new (3, &out);
 
-  stab_push_frames (h, 0, 3);
-  out = stab_record_new (h);
   gst_harness_push_event (h, gst_event_new_gap (3 * FRAME_DURATION,
           6 * FRAME_DURATION));
   fail_unless_equals_string (out->str, "f0 f1 ");
@@ -102,11 +105,9 @@ GST_END_TEST;
  * before the sink has a frame. */
 GST_START_TEST (at_the_end_of_its_group_a_stream_is_drained)
 {
-  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GString *out;
+  GstHarness *h = recorded_harness_new (3, &out);
 
-  stab_push_frames (h, 0, 3);
-  out = stab_record_new (h);
   gst_harness_push_event (h, gst_event_new_stream_group_done (1));
   fail_unless_equals_string (out->str, "f0 f1 f2 stream-group-done ");
   stab_harness_free (h);
@@ -116,11 +117,9 @@ GST_END_TEST;
 
 GST_START_TEST (a_gap_of_unknown_length_holds_no_frame)
 {
-  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GString *out;
+  GstHarness *h = recorded_harness_new (3, &out);
 
-  stab_push_frames (h, 0, 3);
-  out = stab_record_new (h);
   gst_harness_push_event (h, gst_event_new_gap (3 * FRAME_DURATION,
           GST_CLOCK_TIME_NONE));
   fail_unless_equals_string (out->str, "f0 f1 f2 gap ");
@@ -131,11 +130,9 @@ GST_END_TEST;
 
 GST_START_TEST (an_event_out_of_band_overtakes_the_frames)
 {
-  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GString *out;
+  GstHarness *h = recorded_harness_new (3, &out);
 
-  stab_push_frames (h, 0, 3);
-  out = stab_record_new (h);
   gst_harness_push_event (h, custom_event (GST_EVENT_CUSTOM_DOWNSTREAM_OOB));
   fail_unless_equals_string (out->str, "custom-downstream-oob ");
   stab_harness_free (h);
@@ -145,13 +142,11 @@ GST_END_TEST;
 
 GST_START_TEST (a_tag_outlives_a_flush_and_a_custom_event_does_not)
 {
-  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
-  GstSegment segment;
   GString *out;
+  GstHarness *h = recorded_harness_new (3, &out);
+  GstSegment segment;
 
   gst_segment_init (&segment, GST_FORMAT_TIME);
-  stab_push_frames (h, 0, 3);
-  out = stab_record_new (h);
   gst_harness_push_event (h, tag_event ("one"));
   gst_harness_push_event (h, custom_event (GST_EVENT_CUSTOM_DOWNSTREAM));
   gst_harness_push_event (h, gst_event_new_flush_start ());

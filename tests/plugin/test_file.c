@@ -25,16 +25,6 @@ file_harness_new (void)
   return h;
 }
 
-static GstBuffer *
-frame_at (GstHarness * h, GstClockTime pts, GstClockTime duration)
-{
-  GstBuffer *buffer = stab_frame_new (h, 0);
-
-  GST_BUFFER_PTS (buffer) = pts;
-  GST_BUFFER_DURATION (buffer) = duration;
-  return buffer;
-}
-
 GST_START_TEST (the_clock_pushes_nothing_of_a_source_that_is_not_live)
 {
   GstHarness *h = file_harness_new ();
@@ -84,7 +74,7 @@ GST_START_TEST (frames_of_a_varying_rate_keep_their_times_and_wait_no_longer)
     times[i] = in;
     durations[i] = steps[i % 10] * GST_MSECOND;
     in += durations[i];
-    gst_harness_push (h, frame_at (h, times[i], durations[i]));
+    gst_harness_push (h, stab_frame_new_at (h, times[i], durations[i]));
     while ((buffer = gst_harness_try_pull (h)) != NULL) {
       fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer), times[n_out]);
       fail_unless_equals_uint64 (GST_BUFFER_DURATION (buffer),

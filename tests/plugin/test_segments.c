@@ -19,18 +19,6 @@ push_segment (GstHarness * h, gdouble rate, GstSegmentFlags flags)
   fail_unless (gst_harness_push_event (h, gst_event_new_segment (&segment)));
 }
 
-static GstClockTime
-position_of (GstHarness * h)
-{
-  GstQuery *query = gst_query_new_position (GST_FORMAT_TIME);
-  gint64 position;
-
-  fail_unless (gst_pad_peer_query (h->sinkpad, query));
-  gst_query_parse_position (query, NULL, &position);
-  gst_query_unref (query);
-  return position;
-}
-
 static const gdouble rates[] = { 0.25, 1, 4 };
 
 GST_START_TEST (the_window_is_full_at_any_rate)
@@ -62,7 +50,7 @@ GST_START_TEST (in_reverse_the_frames_and_the_position_go_back)
     stab_push_frames (h, i, 1);
     if (i + WINDOW - 1 < 50) {
       stab_pull_frames (h, i + WINDOW - 1, 1);
-      fail_unless_equals_uint64 (position_of (h),
+      fail_unless_equals_uint64 (stab_position (h),
           (i + WINDOW - 1) * FRAME_DURATION);
     }
   }
@@ -73,7 +61,7 @@ GST_START_TEST (in_reverse_the_frames_and_the_position_go_back)
     fail_unless_equals_uint64 (GST_BUFFER_PTS (buffer), i * FRAME_DURATION);
     gst_buffer_unref (buffer);
   }
-  fail_unless_equals_uint64 (position_of (h), 0);
+  fail_unless_equals_uint64 (stab_position (h), 0);
   stab_harness_free (h);
 }
 

@@ -26,22 +26,12 @@ clock_time (GstHarness * h)
   return now;
 }
 
-static GstBuffer *
-frame_at (GstHarness * h, GstClockTime pts, GstClockTime duration)
-{
-  GstBuffer *buffer = stab_frame_new (h, 0);
-
-  GST_BUFFER_PTS (buffer) = pts;
-  GST_BUFFER_DURATION (buffer) = duration;
-  return buffer;
-}
-
 /* The frame of this time comes in, at this time. */
 static void
 push_live (GstHarness * h, GstClockTime pts)
 {
   gst_harness_set_time (h, pts);
-  fail_unless_equals_int (gst_harness_push (h, frame_at (h, pts,
+  fail_unless_equals_int (gst_harness_push (h, stab_frame_new_at (h, pts,
               FRAME_DURATION)), GST_FLOW_OK);
 }
 
@@ -167,7 +157,7 @@ GST_START_TEST (a_sink_that_blocks_hurries_no_frame)
   for (; i < 3 * WINDOW; i++) {
     fail_unless_equals_int (gst_harness_buffers_in_queue (h), 1);
     gst_buffer_unref (gst_harness_pull (h));
-    fail_unless_equals_int (gst_harness_push (h, frame_at (h,
+    fail_unless_equals_int (gst_harness_push (h, stab_frame_new_at (h,
                 i * FRAME_DURATION, FRAME_DURATION)), GST_FLOW_OK);
   }
   stab_harness_free (h);
@@ -284,9 +274,9 @@ GST_START_TEST (what_the_clock_met_downstream_goes_upstream_with_the_next_frame)
   crank_to (h, LIMIT);
   while (g_atomic_int_get (&n_ended) == 0)
     g_usleep (1000);
-  fail_unless_equals_int (gst_harness_push (h, frame_at (h, LATENCY,
+  fail_unless_equals_int (gst_harness_push (h, stab_frame_new_at (h, LATENCY,
               FRAME_DURATION)), GST_FLOW_EOS);
-  fail_unless_equals_int (gst_harness_push (h, frame_at (h, LATENCY,
+  fail_unless_equals_int (gst_harness_push (h, stab_frame_new_at (h, LATENCY,
               FRAME_DURATION)), GST_FLOW_OK);
   gst_object_unref (pad);
   stab_harness_free (h);

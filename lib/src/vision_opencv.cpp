@@ -69,7 +69,6 @@ struct L1L2Vision {
     cv::Mat matched;                         /* the previous picture in the current one's brightness */
     std::vector<cv::Point2f> from, to, back;
     std::vector<uchar> found, found_back;
-    std::vector<float> error;
 };
 
 namespace {
@@ -194,10 +193,10 @@ cv::Rect scaled(cv::Rect area, int factor, cv::Size small, cv::Size size)
 void follow(L1L2Vision *v)
 {
     const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kIterations, kLastStep);
-    cv::calcOpticalFlowPyrLK(v->previous_pyramid, v->pyramid, v->from, v->to, v->found, v->error, window_size, kLevels,
-                             until, 0, kMinEigenvalue);
+    cv::calcOpticalFlowPyrLK(v->previous_pyramid, v->pyramid, v->from, v->to, v->found, cv::noArray(), window_size,
+                             kLevels, until, 0, kMinEigenvalue);
     v->back = v->from;
-    cv::calcOpticalFlowPyrLK(v->pyramid, v->previous_pyramid, v->to, v->back, v->found_back, v->error, window_size,
+    cv::calcOpticalFlowPyrLK(v->pyramid, v->previous_pyramid, v->to, v->back, v->found_back, cv::noArray(), window_size,
                              kBackLevels, until, cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The seam to the imaging library: the grey, downscaled picture of each frame, its pyramid, Shi-Tomasi corners
- * (Shi & Tomasi, CVPR 1994) and pyramidal Lucas-Kanade. Plain C types only; the other side is vision_opencv.cpp.
+ * (Shi & Tomasi, CVPR 1994), and points followed by flow.h. Plain C types only; the other side is vision_opencv.cpp.
  *
  * Points are pixels of the downscaled picture as the imaging library counts them: origin at the top left pixel's
  * centre. l1l2_vision_size() tells that picture's size, so that the caller can convert.

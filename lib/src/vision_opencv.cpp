@@ -15,16 +15,14 @@
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp>
+#include <opencv2/video/tracking.hpp> /* the pyramid */
 
+#include "flow.h"
 #include "log.h"
 #include "scale.h"
 
 namespace {
 
-/* Measured on ten real clips (difference of frame t-1, moved by the fit, to frame t): windows of 9, 11 and 15 px are
- * equally good, 15 costs twice as much as 11, and 9 loses more points. */
-constexpr int kWindow = 11;
 /* Halvings above the picture itself: at 640 px, points are followed over 80 px a frame; one less loses half of them at
  * 40 px, and each costs next to nothing. */
 constexpr int kLevels = 4;
@@ -32,11 +30,6 @@ constexpr int kLevels = 4;
  * is drawn to where it matches. A fifth faster than all the way from the top, and in fast pans half as many points more
  * pass. */
 constexpr int kBackLevels = 1;
-/* Iterations at each level end after 10 steps or at a step of 0.03 px: 20 and 0.01 are no better. */
-constexpr int kIterations = 10;
-constexpr double kLastStep = 0.03;
-/* A patch's smaller eigenvalue below which it is not followed; about a third of a grey level a pixel. */
-constexpr double kMinEigenvalue = 1e-4;
 /* Corners weaker than this part of the strongest are left out. At 0.01, a dark thing on snow leaves no point but its
  * own. */
 constexpr double kCornerQuality = 0.003;
@@ -51,7 +44,7 @@ constexpr int kBlack = 40, kFlat = 10;
 /* A long strip keeps this many pixels of its short side, as far as it has them: a window has to find its place. */
 constexpr int kMinSide = 32;
 
-const cv::Size window_size(kWindow, kWindow);
+const cv::Size border(L1L2_FLOW_BORDER_X, L1L2_FLOW_BORDER_Y);
 
 using Scaler = std::unique_ptr<L1L2Scaler, decltype(&l1l2_scale_free)>;
 
@@ -67,8 +60,7 @@ struct L1L2Vision {
     cv::Rect active;                         /* the picture without its bars, of the downscaled size */
     cv::Mat mask;
     cv::Mat matched;                         /* the previous picture in the current one's brightness */
-    std::vector<cv::Point2f> from, to, back;
-    std::vector<uchar> found, found_back;
+    std::vector<cv::Point2f> from;
 };
 
 namespace {
@@ -134,7 +126,7 @@ void match_brightness(L1L2Vision *v)
     if (cv::norm(now, matched, cv::NORM_L1) > kNearer * cv::norm(now, before, cv::NORM_L1))
         return;
     v->previous_grey.convertTo(v->matched, CV_8U, gain, offset);
-    cv::buildOpticalFlowPyramid(v->matched, v->previous_pyramid, window_size, kLevels);
+    cv::buildOpticalFlowPyramid(v->matched, v->previous_pyramid, border, kLevels);
 }
 
 /* How many lines of `low` and `high`, from one end on, differ by next to nothing: a bar. Not more than 45 %. */
@@ -163,7 +155,7 @@ cv::Rect active_area(const cv::Mat &picture)
         for (int end = 0; end < 2; end++) {
             bar[2 * side + end] = bar_lines(low, high, end == 1);
             if (bar[2 * side + end] > 0)
-                bar[2 * side + end] += kWindow / 2 + 1;
+                bar[2 * side + end] += L1L2_FLOW_WINDOW / 2 + 1;
         }
     }
     const cv::Rect inner(bar[2], bar[0], picture.cols - bar[2] - bar[3], picture.rows - bar[0] - bar[1]);
@@ -189,15 +181,16 @@ cv::Rect scaled(cv::Rect area, int factor, cv::Size small, cv::Size size)
     return {area.x * factor, area.y * factor, right - area.x * factor, bottom - area.y * factor};
 }
 
-/* Follows v->from into v->to, and v->to back into v->back. */
-void follow(L1L2Vision *v)
+/* What follows points through a pyramid, every second entry of which has a level's slopes. Returns how many levels. */
+int levels(const std::vector<cv::Mat> &pyramid, L1L2FlowLevel *level)
 {
-    const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kIterations, kLastStep);
-    cv::calcOpticalFlowPyrLK(v->previous_pyramid, v->pyramid, v->from, v->to, v->found, cv::noArray(), window_size,
-                             kLevels, until, 0, kMinEigenvalue);
-    v->back = v->from;
-    cv::calcOpticalFlowPyrLK(v->pyramid, v->previous_pyramid, v->to, v->back, v->found_back, cv::noArray(), window_size,
-                             kBackLevels, until, cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
+    const int count = int(pyramid.size()) / 2;
+    for (int i = 0; i < count; i++) {
+        const cv::Mat &grey = pyramid[size_t(2 * i)], &slope = pyramid[size_t(2 * i + 1)];
+        level[i] = {grey.ptr<uchar>(), slope.ptr<int16_t>(), ptrdiff_t(grey.step), ptrdiff_t(slope.step1()),
+                    grey.cols, grey.rows};
+    }
+    return count;
 }
 
 /* Cell by cell from left to right, row by row. */
@@ -272,7 +265,7 @@ L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t
         std::swap(v->pyramid, v->previous_pyramid);
         v->grey.create(v->size, CV_8U);
         l1l2_scale_run(v->to_grey.get(), data, stride, v->grey.data, ptrdiff_t(v->grey.step));
-        cv::buildOpticalFlowPyramid(v->grey, v->pyramid, window_size, kLevels);
+        cv::buildOpticalFlowPyramid(v->grey, v->pyramid, border, kLevels);
         v->pictures = std::min(v->pictures + 1, 2);
         if (v->pictures == 2)
             match_brightness(v);
@@ -330,16 +323,16 @@ L1L2StabResult l1l2_vision_track(L1L2Vision *v, const L1L2Pixel *from, L1L2Pixel
     if (v->pictures < 2 || count <= 0)
         return L1L2STAB_OK;
     return guard(v->cfg.log, [&] {
-        v->from.resize(size_t(count));
-        for (int i = 0; i < count; i++)
-            v->from[size_t(i)] = cv::Point2f(from[i].x, from[i].y);
-        follow(v);
+        L1L2FlowLevel before[kLevels + 1], now[kLevels + 1];
+        const int all = std::min(levels(v->previous_pyramid, before), levels(v->pyramid, now));
         for (int i = 0; i < count; i++) {
-            const size_t k = size_t(i);
-            const cv::Point2f away = v->back[k] - v->from[k];
-            to[i] = {v->to[k].x, v->to[k].y};
-            ok[i] = v->found[k] && v->found_back[k] && inside(v, v->to[k]) &&
-                    std::hypot(double(away.x), double(away.y)) <= max_return;
+            const L1L2FlowPoint start = {from[i].x, from[i].y};
+            L1L2FlowPoint there = start, back = start;
+            const bool found = l1l2_flow_follow(before, now, all, start, &there) &&
+                               l1l2_flow_follow(now, before, std::min(all, kBackLevels + 1), there, &back);
+            to[i] = {there.x, there.y};
+            ok[i] = found && inside(v, {there.x, there.y}) &&
+                    std::hypot(double(back.x - start.x), double(back.y - start.y)) <= max_return;
         }
     });
 }

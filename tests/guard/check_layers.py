@@ -12,8 +12,8 @@ import sys
 from pathlib import Path
 
 PUBLIC = 'l1l2stab/l1l2stab.h'
-LEAF = {'clock', 'cut', 'dissolve', 'fade', 'format', 'geom', 'log', 'mem', 'pool', 'residual', 'rng',
-        'scale'}
+LEAF = {'clock', 'cut', 'dissolve', 'fade', 'flow', 'format', 'geom', 'log', 'mem', 'pool', 'residual',
+        'rng', 'scale'}
 
 # A group's modules, and the groups that it may include besides itself and the leaves. path_qp.c is of module path.
 GROUPS = {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The frame's planes, cut into bands of rows that threads take in any order. A band goes run by run: the generator
- * (warp_coords.h) writes positions, the sample type (warp_u8.h) with its kernel (warp_kernel.h) renders them. Planes
+ * (warp_coords.h) writes positions, a renderer with its kernel (warp_kernel.h) weighs the samples around them: along
+ * lines (warp_line.h), if they are of 8 bits and the map turns little; else one by one (warp_u8.h, warp_u16.h). Planes
  * that a map moves by whole samples are copied.
  */
 #include "warp.h"
@@ -11,12 +12,15 @@
 #include "mem.h"
 #include "warp_coords.h"
 #include "warp_kernel.h"
+#include "warp_line.h"
 #include "warp_packed.h"
 #include "warp_u16.h"
 #include "warp_u8.h"
 
 enum {
-    ROWS_AHEAD = 6, /* below the first tap of a sample: more than the taps of this run and the next reach */
+    CACHE_LINE = 64,
+    ROWS_AHEAD = 6, /* below a position: more than the taps of this run and the next reach */
+    TILE_RUNS = 2,
     BAND_ROWS = 32 /* enough work to be worth a thread's while, few enough to share a frame out evenly */
 };
 
@@ -37,6 +41,7 @@ typedef struct PlaneJob {
     ptrdiff_t dst_stride;
     int width, height; /* of dst, samples */
     int sample_bytes;  /* of all its components */
+    L1L2WarpLineRun *line_run; /* for what goes by lines, or NULL */
     L1L2WarpRun *run;
     int bands;
     bool copies;        /* whole steps, without a mesh: sample (u, v) is the source's (u + step_x, v + step_y) */
@@ -87,7 +92,7 @@ void l1l2_warp_free(L1L2Warp *w)
 
 const char *l1l2_warp_simd(void)
 {
-    return l1l2_warp_u8_run(2, 1) == l1l2_warp_u8_run_plain(2, 1) ? "none" : "avx2";
+    return l1l2_warp_line_run(2, 1) == l1l2_warp_line_run_plain(2, 1) ? "none" : "avx2";
 }
 
 /* The sample type's function for one plane. */
@@ -95,7 +100,14 @@ static L1L2WarpRun *find_run(const L1L2WarpConfig *cfg, int taps, int components
 {
     if (cfg->format->depth > 8)
         return (cfg->plain ? l1l2_warp_u16_run_plain : l1l2_warp_u16_run)(taps, components, cfg->format->depth);
-    return (cfg->plain ? l1l2_warp_u8_run_plain : l1l2_warp_u8_run)(taps, components);
+    return l1l2_warp_u8_run(taps, components);
+}
+
+static L1L2WarpLineRun *find_line_run(const L1L2WarpConfig *cfg, int taps, int components)
+{
+    if (cfg->format->depth > 8)
+        return NULL;
+    return (cfg->plain ? l1l2_warp_line_run_plain : l1l2_warp_line_run)(taps, components);
 }
 
 /* Whether the positions of all samples are whole steps. They are if those of the corners are: along a row the distance
@@ -142,39 +154,78 @@ static void copy_band(const PlaneJob *job, int band)
     }
 }
 
-/* The source that a run some rows further down will read is fetched while this one is rendered: tiles are too narrow
- * for the processor to guess it. */
-static void fetch_ahead(const PlaneJob *job, const int32_t *x, const int32_t *y, int count)
+/* Source and output of some rows further down are fetched while a run is rendered: tiles are too narrow for the
+ * processor to guess them. */
+static void fetch(const PlaneJob *job, int column, int row)
 {
 #if defined(__GNUC__)
-    const int step = 64 / job->sample_bytes; /* a cache line */
-    for (int i = 0; i < count; i += step) {
-        const int column = x[i] >> L1L2_WARP_PHASE_BITS, row = (y[i] >> L1L2_WARP_PHASE_BITS) + ROWS_AHEAD;
-        if (column >= 0 && column < job->src.width && row >= 0 && row < job->src.height)
-            __builtin_prefetch(job->src.data + row * job->src.stride + column * job->sample_bytes);
-    }
+    row += ROWS_AHEAD;
+    if (column >= 0 && column < job->src.width && row >= 0 && row < job->src.height)
+        __builtin_prefetch(job->src.data + row * job->src.stride + column * job->sample_bytes);
 #endif
 }
 
-/* Tile by tile: what is the same for all rows of one is found once. */
+static void fetch_output(const PlaneJob *job, int u, int v, int count)
+{
+#if defined(__GNUC__)
+    if (v + ROWS_AHEAD < job->height)
+        for (int i = 0; i < count * job->sample_bytes; i += CACHE_LINE)
+            __builtin_prefetch(job->dst + (v + ROWS_AHEAD) * job->dst_stride + u * job->sample_bytes + i, 1);
+#endif
+}
+
+/* Every cache line of the source, that of the last column too. */
+static void fetch_line(const PlaneJob *job, const L1L2WarpLine *line)
+{
+    const int step = CACHE_LINE / job->sample_bytes;
+    for (int k = 0; k < line->down_pieces; k++) {
+        const L1L2WarpPiece *piece = &line->down[k];
+        const int end = k + 1 < line->down_pieces ? piece[1].from : line->columns + step - 1;
+        for (int i = piece->from; i < end; i += step)
+            fetch(job, line->first + i, l1l2_warp_piece_position(piece, i) >> L1L2_WARP_PHASE_BITS);
+    }
+}
+
+/* A run of row v, from u on; cells: the mesh's, if the map is one. */
+static void render_run(const PlaneJob *job, const L1L2WarpKernel *kernel, const L1L2WarpCells *cells, int u, int v,
+                       int count)
+{
+    uint8_t *dst = job->dst + v * job->dst_stride + u * job->sample_bytes;
+    L1L2WarpLine line;
+    fetch_output(job, u, v, count);
+    if (job->line_run && (job->mesh.mesh ? l1l2_warp_mesh_line(&job->mesh, cells, kernel->taps, v, &line)
+                                         : l1l2_warp_affine_line(&job->affine, kernel->taps, u, v, count, &line))) {
+        fetch_line(job, &line);
+        job->line_run(&job->src, kernel, &line, dst);
+        return;
+    }
+    int32_t x[L1L2_WARP_RUN_SAMPLES + L1L2_WARP_RUN_SLACK], y[L1L2_WARP_RUN_SAMPLES + L1L2_WARP_RUN_SLACK];
+    if (job->mesh.mesh)
+        job->generators->mesh(&job->mesh, cells, v, x, y);
+    else
+        job->generators->affine(&job->affine, u, v, count, x, y);
+    for (int i = 0; i < count; i += CACHE_LINE / job->sample_bytes)
+        fetch(job, x[i] >> L1L2_WARP_PHASE_BITS, y[i] >> L1L2_WARP_PHASE_BITS);
+    job->run(&job->src, kernel, x, y, count, dst);
+}
+
+/* Tile by tile: as wide as the first-level cache holds of a turned line's rows. Cells are the same for all rows. */
 static void render_band(const PlaneJob *job, const L1L2WarpKernel *kernel, int band)
 {
-    int32_t x[L1L2_WARP_RUN_SAMPLES + L1L2_WARP_RUN_SLACK], y[L1L2_WARP_RUN_SAMPLES + L1L2_WARP_RUN_SLACK];
     const int first = band * BAND_ROWS;
     const int end = first + BAND_ROWS < job->height ? first + BAND_ROWS : job->height;
-    for (int u = 0; u < job->width; u += L1L2_WARP_RUN_SAMPLES) {
-        const int count = job->width - u < L1L2_WARP_RUN_SAMPLES ? job->width - u : L1L2_WARP_RUN_SAMPLES;
-        L1L2WarpCells cells;
-        if (job->mesh.mesh)
-            cells = l1l2_warp_mesh_cells(&job->mesh, u, count);
-        for (int v = first; v < end; v++) {
+    for (int tile = 0; tile < job->width; tile += TILE_RUNS * L1L2_WARP_RUN_SAMPLES) {
+        L1L2WarpCells cells[TILE_RUNS];
+        int from[TILE_RUNS + 1] = {tile}, runs = 0;
+        for (; runs < TILE_RUNS && from[runs] < job->width; runs++) {
+            const int left = job->width - from[runs];
+            from[runs + 1] = from[runs] + (left < L1L2_WARP_RUN_SAMPLES ? left : L1L2_WARP_RUN_SAMPLES);
             if (job->mesh.mesh)
-                job->generators->mesh(&job->mesh, &cells, v, x, y);
-            else
-                job->generators->affine(&job->affine, u, v, count, x, y);
-            fetch_ahead(job, x, y, count);
-            job->run(&job->src, kernel, x, y, count, job->dst + v * job->dst_stride + u * job->sample_bytes);
+                cells[runs] = l1l2_warp_mesh_cells(&job->mesh, from[runs], from[runs + 1] - from[runs]);
         }
+        for (int v = first; v < end; v++)
+            for (int k = 0; k < runs; k++)
+                render_run(job, kernel, &cells[k], from[k], v, from[k + 1] - from[k]);
     }
 }
 
@@ -215,6 +266,7 @@ static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *co
             .width = l1l2_plane_size(cfg->out_width, sub_x),
             .height = l1l2_plane_size(cfg->out_height, sub_y),
             .sample_bytes = components * l1l2_format_bytes(format),
+            .line_run = find_line_run(cfg, w->kernel.taps, components),
             .run = find_run(cfg, w->kernel.taps, components),
         };
         if (!map->mesh)

@@ -11,6 +11,7 @@
 #ifndef L1L2_WARP_COORDS_H
 #define L1L2_WARP_COORDS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "format.h"
@@ -21,7 +22,9 @@ enum {
     L1L2_WARP_PHASE_BITS = 10, /* 1/1024 px: what rounding a position costs stays well under one grey level */
     L1L2_WARP_PHASES = 1 << L1L2_WARP_PHASE_BITS,
     L1L2_WARP_RUN_SAMPLES = 256, /* the positions of a run stay in the first-level cache */
-    L1L2_WARP_RUN_SLACK = 7
+    L1L2_WARP_RUN_SLACK = 7,
+    L1L2_WARP_STEP_BITS = 27, /* 16 steps of a line fit 32 bits */
+    L1L2_WARP_LINE_COLUMNS = 352 /* of a run at the largest step, with its taps */
 };
 
 /* Where a plane's samples lie in the frame. */
@@ -62,6 +65,30 @@ typedef struct L1L2WarpCells {
 /* They are the same for all rows. count <= L1L2_WARP_RUN_SAMPLES. */
 L1L2WarpCells l1l2_warp_mesh_cells(const L1L2WarpMeshPlane *plane, int u, int count);
 
+/* Positions at even steps, L1L2_WARP_STEP_BITS fractional bits: entry i, of those from `from` on, is at
+ * `at + (i - from) * step`. Half a phase is added, so that a cut to phases rounds. */
+typedef struct L1L2WarpPiece {
+    int64_t at;
+    int32_t step, from;
+} L1L2WarpPiece;
+
+/* Its entry i, cut to phases. */
+static inline int32_t l1l2_warp_piece_position(const L1L2WarpPiece *piece, int i)
+{
+    return (int32_t)((piece->at + (int64_t)(i - piece->from) * piece->step) >>
+                     (L1L2_WARP_STEP_BITS - L1L2_WARP_PHASE_BITS));
+}
+
+/* The way that a run takes through the source: where each of its samples lies across, and at which row the way crosses
+ * each column around them. One piece for an affine map, one a cell for a mesh. Along, steps are 0 .. 4/3 columns a
+ * sample, down at most 1/2 row a column. */
+typedef struct L1L2WarpLine {
+    int count, first, columns; /* samples; the source columns first .. first + columns - 1, some of them outside */
+    int along_pieces, down_pieces;
+    L1L2WarpPiece along[L1L2_WARP_MAX_CELLS]; /* by sample of the run: columns from `first` on */
+    L1L2WarpPiece down[L1L2_WARP_MAX_CELLS];  /* by column from `first` on: rows */
+} L1L2WarpLine;
+
 /* They write the positions of a run of output samples of row v: (u .. u + count - 1, v), or what the cells cover; and
  * anything at all to the L1L2_WARP_RUN_SLACK entries behind it. Positions do not depend on where a run begins; far
  * outside they saturate, at some 500000 samples from the plane's corner. */
@@ -69,6 +96,11 @@ typedef struct L1L2WarpGenerators {
     void (*affine)(const L1L2WarpAffine *affine, int u, int v, int count, int32_t *x, int32_t *y);
     void (*mesh)(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int v, int32_t *x, int32_t *y);
 } L1L2WarpGenerators;
+
+/* The same runs as lines with all columns of their taps. False: the map zooms out or turns too far for one. */
+bool l1l2_warp_affine_line(const L1L2WarpAffine *affine, int taps, int u, int v, int count, L1L2WarpLine *line);
+bool l1l2_warp_mesh_line(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int taps, int v,
+                         L1L2WarpLine *line);
 
 /* The fastest that this processor has; all give the same positions. */
 const L1L2WarpGenerators *l1l2_warp_generators(void);

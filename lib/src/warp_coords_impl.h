@@ -76,18 +76,30 @@ SPECIALIZED double saturate(double at)
     return near > -FAR ? near : -FAR;
 }
 
-/* One axis. above, below: that coordinate of the first cell's left nodes; share: of those below; a node's coordinate is
- * at `node * scale + shift` of the source plane. */
-SPECIALIZED void run_cells(const L1L2WarpCells *cells, const double *above, const double *below, double share,
-                             double scale, double shift, int32_t *out, RunFixed *run_fixed)
+/* A mesh's row of cells, cut at an output row: one coordinate of the cuts' ends, in samples of the source plane. */
+SPECIALIZED void cut_cells(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int v, double *x, double *y)
 {
-    double node[L1L2_WARP_MAX_CELLS + 1];
+    const L1L2WarpMesh *mesh = plane->mesh;
+    const L1L2WarpGrid *dst = &plane->dst, *src = &plane->src;
+    const double down = (dst->first_y + dst->step_y * v) * (mesh->rows - 1) / dst->size_y;
+    const int row = down < mesh->rows - 2 ? (int)down : mesh->rows - 2;
+    const double share = down - row;
+    const L1L2Point *above = mesh->node + row * mesh->columns + cells->column, *below = above + mesh->columns;
+    const double scale_x = 1.0 / src->step_x, shift_x = (src->size_x / 2.0 - src->first_x) / src->step_x;
+    const double scale_y = 1.0 / src->step_y, shift_y = (src->size_y / 2.0 - src->first_y) / src->step_y;
+    for (int k = 0; k <= cells->count; k++) {
+        x[k] = saturate(((1.0 - share) * above[k].x + share * below[k].x) * scale_x + shift_x);
+        y[k] = saturate(((1.0 - share) * above[k].y + share * below[k].y) * scale_y + shift_y);
+    }
+}
+
+/* One axis, by its coordinate at the cells' sides. */
+SPECIALIZED void run_cells(const L1L2WarpCells *cells, const double *side, int32_t *out, RunFixed *run_fixed)
+{
     uint64_t at[L1L2_WARP_MAX_CELLS], step[L1L2_WARP_MAX_CELLS];
-    for (int k = 0; k <= cells->count; k++)
-        node[k] = saturate(((1.0 - share) * above[2 * k] + share * below[2 * k]) * scale + shift);
     for (int k = 0; k < cells->count; k++) {
-        const double slope = (node[k + 1] - node[k]) * cells->slope;
-        at[k] = to_fixed(node[k] + cells->offset[k] * slope) + HALF_PHASE;
+        const double slope = (side[k + 1] - side[k]) * cells->slope;
+        at[k] = to_fixed(side[k] + cells->offset[k] * slope) + HALF_PHASE;
         step[k] = to_fixed(slope);
     }
     at[0] += (uint64_t)cells->skipped * step[0];
@@ -98,15 +110,10 @@ SPECIALIZED void run_cells(const L1L2WarpCells *cells, const double *above, cons
 SPECIALIZED void mesh_run(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int v, int32_t *x, int32_t *y,
                           RunFixed *run_fixed)
 {
-    const L1L2WarpMesh *mesh = plane->mesh;
-    const L1L2WarpGrid *dst = &plane->dst, *src = &plane->src;
-    const double down = (dst->first_y + dst->step_y * v) * (mesh->rows - 1) / dst->size_y;
-    const int row = down < mesh->rows - 2 ? (int)down : mesh->rows - 2;
-    const L1L2Point *above = mesh->node + row * mesh->columns + cells->column, *below = above + mesh->columns;
-    run_cells(cells, &above->x, &below->x, down - row, 1.0 / src->step_x,
-              (src->size_x / 2.0 - src->first_x) / src->step_x, x, run_fixed);
-    run_cells(cells, &above->y, &below->y, down - row, 1.0 / src->step_y,
-              (src->size_y / 2.0 - src->first_y) / src->step_y, y, run_fixed);
+    double side_x[L1L2_WARP_MAX_CELLS + 1], side_y[L1L2_WARP_MAX_CELLS + 1];
+    cut_cells(plane, cells, v, side_x, side_y);
+    run_cells(cells, side_x, x, run_fixed);
+    run_cells(cells, side_y, y, run_fixed);
 }
 
 /* From run_fixed() the generators. */

@@ -31,6 +31,12 @@ static inline int l1l2_warp_kernel_stride(int taps)
     return taps <= 2 ? 2 : taps <= 4 ? 4 : 8;
 }
 
+/* The rounded product of two numbers with 15 fractional bits, as processors have it for words. */
+static inline int l1l2_warp_product(int a, int b)
+{
+    return (a * b + (1 << 14)) >> 15;
+}
+
 void l1l2_warp_kernel_init(L1L2WarpKernel *kernel, L1L2StabInterpolation interpolation);
 
 #endif

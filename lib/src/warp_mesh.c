@@ -3,14 +3,22 @@
 
 #include "mem.h"
 
-static int count_nodes(int size)
+static int count_nodes(int size, int cell)
 {
-    return (size + L1L2_WARP_MESH_CELL_PX - 1) / L1L2_WARP_MESH_CELL_PX + 1;
+    return (size + cell - 1) / cell + 1;
+}
+
+static int cell_width(int width)
+{
+    const int sixteenth = width / 16 / L1L2_WARP_MESH_CELL_PX * L1L2_WARP_MESH_CELL_PX;
+    return sixteenth < L1L2_WARP_MESH_CELL_PX ? L1L2_WARP_MESH_CELL_PX
+         : sixteenth < L1L2_WARP_MESH_WIDEST_PX ? sixteenth : L1L2_WARP_MESH_WIDEST_PX;
 }
 
 bool l1l2_warp_mesh_init(L1L2WarpMesh *mesh, int width, int height)
 {
-    *mesh = (L1L2WarpMesh){width, height, count_nodes(width), count_nodes(height), NULL};
+    *mesh = (L1L2WarpMesh){width, height, count_nodes(width, cell_width(width)),
+                           count_nodes(height, L1L2_WARP_MESH_CELL_PX), NULL};
     mesh->node = l1l2_mem_new((size_t)mesh->columns * (size_t)mesh->rows, sizeof *mesh->node);
     return mesh->node != NULL;
 }

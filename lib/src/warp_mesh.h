@@ -12,7 +12,9 @@
 
 #include "geom.h"
 
-enum { L1L2_WARP_MESH_CELL_PX = 16 }; /* no cell's side is longer */
+/* No cell is higher than 16 px. A residual changes less along a row than from row to row, and each cell of a row is a
+ * piece of work: they are up to 64 px wide, some sixteen of them in a row of a small frame. */
+enum { L1L2_WARP_MESH_CELL_PX = 16, L1L2_WARP_MESH_WIDEST_PX = 64 };
 
 /* The nodes cover the output frame exactly: the first and last row and column of them lie on its border. */
 typedef struct L1L2WarpMesh {

@@ -101,13 +101,4 @@ SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, con
     }
 }
 
-DEFINE_RUNS(l1l2_warp_u8_run_plain)
-
-L1L2WarpRun *l1l2_warp_u8_run(int taps, int components)
-{
-#ifdef L1L2_WARP_AVX2
-    if (__builtin_cpu_supports("avx2"))
-        return l1l2_warp_u8_run_avx2(taps, components);
-#endif
-    return l1l2_warp_u8_run_plain(taps, components);
-}
+DEFINE_RUNS(l1l2_warp_u8_run)

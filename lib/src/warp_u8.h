@@ -21,13 +21,7 @@ enum {
     L1L2_WARP_U8_ROUND = (1 << (L1L2_WARP_U8_SHIFT - 1)) + (1 << (L1L2_WARP_WEIGHT_BITS - 1))
 };
 
-/* For a kernel of 2, 4 or 6 taps and 1..4 interleaved components: the fastest that this processor has. */
+/* For a kernel of 2, 4 or 6 taps and 1..4 interleaved components. Plain C: no picture that is steadied needs it. */
 L1L2WarpRun *l1l2_warp_u8_run(int taps, int components);
-
-/* Plain C, for every processor. */
-L1L2WarpRun *l1l2_warp_u8_run_plain(int taps, int components);
-
-/* There only where the build defines L1L2_WARP_AVX2, and for processors that have it. */
-L1L2WarpRun *l1l2_warp_u8_run_avx2(int taps, int components);
 
 #endif

@@ -31,6 +31,31 @@ START_TEST(every_format_and_kernel_follows_a_floating_point_warp)
 }
 END_TEST
 
+/* These go sample by sample in all formats. The loop test's index is the interpolation. */
+START_TEST(maps_that_turn_far_or_zoom_out_follow_it_too)
+{
+    static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_I420, L1L2STAB_FORMAT_NV12, L1L2STAB_FORMAT_RGB,
+                                             L1L2STAB_FORMAT_BGRA};
+    static const double turns[][2] = {{1.0, 0.7}, {0.9, 1.6}, {1.1, 3.0}, {0.8, -2.0}, {1.7, 0.02}, {2.4, -0.1}};
+    for (int f = 0; f < 4; f++) {
+        Picture src = picture_new(formats[f], 64, 48), dst = picture_new(formats[f], 51, 41);
+        picture_randomize(&src, (uint64_t)f);
+        L1L2WarpConfig cfg = warp_config(&src, &dst);
+        cfg.interpolation = (L1L2StabInterpolation)_i;
+        for (size_t k = 0; k < sizeof turns / sizeof turns[0]; k++) {
+            const double zoom = turns[k][0], angle = turns[k][1];
+            const L1L2WarpMap map = {
+                .affine = l1l2_mat_similarity(zoom * cos(angle), zoom * sin(angle), 1.3, -0.7)};
+            warp_picture_by(&cfg, &map, &src, &dst);
+            assert_close_to_reference(&cfg, &map, &src, &dst);
+            assert_guards_untouched(&dst);
+        }
+        picture_free(&src);
+        picture_free(&dst);
+    }
+}
+END_TEST
+
 /* Rows are cut, not rounded, before the columns are summed: that alone would darken by 0.008. */
 START_TEST(the_mean_level_is_kept)
 {
@@ -159,6 +184,7 @@ int main(void)
     TCase *tc = tcase_create("warp");
     tcase_add_loop_test(tc, every_format_and_kernel_follows_a_floating_point_warp, FIRST_FORMAT,
                         END_FORMAT);
+    tcase_add_loop_test(tc, maps_that_turn_far_or_zoom_out_follow_it_too, 0, 3);
     tcase_add_loop_test(tc, the_mean_level_is_kept, 0, 3);
     tcase_add_test(tc, affine_maps_that_are_no_similarities_are_followed_too);
     tcase_add_loop_test(tc, chroma_stays_where_the_luma_is, 0, 3);

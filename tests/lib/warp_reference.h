@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The warp's reference: for every sample, the sum over its taps in doubles, with positions and weights unrounded. */
+/*
+ * The warp's reference: for every sample, the sum over its taps in doubles, with positions and weights unrounded. Where
+ * the warp goes by lines, a column's taps lie around the row at which the line through the output row crosses it.
+ */
 #ifndef WARP_REFERENCE_H
 #define WARP_REFERENCE_H
 
@@ -24,7 +27,7 @@ static inline int clamp(int value, int low, int high)
 }
 
 /* Where samples of a plane lie in the frame, by axis, from the definition of the sites. */
-static inline double frame_position(int index, int log2_sub, int cosited)
+static inline double frame_position(double index, int log2_sub, int cosited)
 {
     return index * (1 << log2_sub) + (cosited ? 0.5 : 0.5 * (1 << log2_sub));
 }
@@ -47,8 +50,9 @@ static inline L1L2Point mesh_apply(const L1L2WarpMesh *mesh, L1L2Point p)
                        (1 - b) * ((1 - a) * n[0].y + a * n[1].y) + b * ((1 - a) * m[0].y + a * m[1].y)};
 }
 
-/* Output sample (u, v) -> source position in samples of the same plane. */
-static inline L1L2Point source_position(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane, int u, int v)
+/* Output sample (u, v), also between samples, -> source position in samples of the same plane. */
+static inline L1L2Point source_position(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane, double u,
+                                        int v)
 {
     const int sub_x = cfg->format->plane[plane].log2_sub_x, sub_y = cfg->format->plane[plane].log2_sub_y;
     const int left = cfg->chroma_site != L1L2STAB_CHROMA_SITE_CENTER;
@@ -58,6 +62,41 @@ static inline L1L2Point source_position(const L1L2WarpConfig *cfg, const L1L2War
     const L1L2Point from = map->mesh ? mesh_apply(map->mesh, to) : l1l2_mat_apply(&map->affine, to);
     return (L1L2Point){plane_position(from.x + cfg->in_width / 2.0, sub_x, left),
                        plane_position(from.y + cfg->in_height / 2.0, sub_y, top)};
+}
+
+/* The output samples between which row v crosses a column: at the sides of a mesh's cell, or any two of the map's. */
+static inline void find_crossing(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane, int v, int column,
+                                 double side[2])
+{
+    side[0] = 0, side[1] = 1;
+    for (int k = 0; map->mesh && k < map->mesh->columns - 1; k++) {
+        const int sub_x = cfg->format->plane[plane].log2_sub_x;
+        const int left = cfg->chroma_site != L1L2STAB_CHROMA_SITE_CENTER;
+        side[0] = plane_position((double)k * cfg->out_width / (map->mesh->columns - 1), sub_x, left);
+        side[1] = plane_position((k + 1.0) * cfg->out_width / (map->mesh->columns - 1), sub_x, left);
+        if (source_position(cfg, map, plane, side[1], v).x > column)
+            break;
+    }
+}
+
+/* Whether the rows of a plane are lines: warp_coords.h. */
+static inline bool goes_by_lines(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane)
+{
+    const L1L2Point a = source_position(cfg, map, plane, 0, 0), b = source_position(cfg, map, plane, 1, 0);
+    const double step = b.x - a.x, slope = (b.y - a.y) / step;
+    return cfg->format->depth == 8 && (map->mesh || (step > 0 && step <= 4.0 / 3.0 && fabs(slope) <= 0.5));
+}
+
+/* At sample (u, v), which lies at `at`, the row around which a column's taps are. */
+static inline double row_of_column(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane, L1L2Point at, int v,
+                                   int column)
+{
+    if (!goes_by_lines(cfg, map, plane))
+        return at.y;
+    double side[2];
+    find_crossing(cfg, map, plane, v, column, side);
+    const L1L2Point a = source_position(cfg, map, plane, side[0], v), b = source_position(cfg, map, plane, side[1], v);
+    return a.y + (b.y - a.y) / (b.x - a.x) * (column - a.x);
 }
 
 static inline void weigh_axis(const L1L2WarpConfig *cfg, double at, int size, double weight[6], int index[6])
@@ -80,10 +119,14 @@ static inline double reference(const L1L2WarpConfig *cfg, const L1L2WarpMap *map
     double wx[6], wy[6], sum = 0;
     int ix[6], iy[6];
     weigh_axis(cfg, at.x, src->plane[plane].width, wx, ix);
-    weigh_axis(cfg, at.y, src->plane[plane].height, wy, iy);
-    for (int r = 0; r < 6; r++)
-        for (int k = 0; k < 6; k++)
+    for (int k = 0; k < 6; k++) {
+        if (wx[k] == 0)
+            continue;
+        weigh_axis(cfg, row_of_column(cfg, map, plane, at, v, (int)floor(at.x) - 2 + k), src->plane[plane].height, wy,
+                   iy);
+        for (int r = 0; r < 6; r++)
             sum += wy[r] * wx[k] * level(src, plane, ix[k], iy[r], component);
+    }
     return fmin(fmax(sum, 0), max_level(src));
 }
 
@@ -94,14 +137,14 @@ static inline double reference(const L1L2WarpConfig *cfg, const L1L2WarpMap *map
  *   positions to 1/1024             2 * 255 * D * G / 2048
  *   weights to 14 bits, twice the rounding of each, for the nearest takes what is left over
  *                                   2 * 255 * G * taps / 16384; none for the bilinear's, which are exact
- *   rows cut to 6 bits              G / 128
+ *   products rounded to 7 bits before the others' axis   taps * G / 256
  * Below 1.5, so that a sample is never more than 1 from the rounded exact value. Deeper samples: all but the rounding
  * grows with their range.
  */
 static const double WORST[] = {
     [L1L2STAB_INTERPOLATION_BILINEAR] = 0.5 + 0.25 + 0.01,          /* G = 1, D = 1 */
-    [L1L2STAB_INTERPOLATION_BICUBIC] = 0.5 + 0.52 + 0.18 + 0.02,    /* G = 1.375, D = 1.5 */
-    [L1L2STAB_INTERPOLATION_LANCZOS] = 0.5 + 0.63 + 0.30 + 0.02,    /* G = 1.55, D = 1.59 */
+    [L1L2STAB_INTERPOLATION_BICUBIC] = 0.5 + 0.52 + 0.18 + 0.03,    /* G = 1.375, D = 1.5 */
+    [L1L2STAB_INTERPOLATION_LANCZOS] = 0.5 + 0.63 + 0.30 + 0.04,    /* G = 1.55, D = 1.59 */
 };
 
 static inline void assert_close_to_reference(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, const Picture *src,

@@ -62,14 +62,20 @@ L1L2Point l1l2_residual_at(const L1L2ResidualShape *shape, const L1L2Residual *r
     return sum;
 }
 
+/* Points all over the frame, of mean 0. */
+enum { COLUMNS = 5, ROWS = 10, POINTS = COLUMNS * ROWS };
+
+static L1L2Point sample(const L1L2ResidualShape *shape, int i)
+{
+    return (L1L2Point){(2.0 * (i % COLUMNS) / (COLUMNS - 1) - 1.0) * shape->half_w,
+                       2.0 * l1l2_residual_band(i / COLUMNS) * shape->half_h};
+}
+
 L1L2Mat l1l2_residual_split(const L1L2ResidualShape *shape, L1L2Residual *r)
 {
-    enum { COLUMNS = 5, ROWS = 10, POINTS = COLUMNS * ROWS };
     double a = 0.0, b = 0.0, x = 0.0, y = 0.0, norm = 0.0;
     for (int i = 0; i < POINTS; i++) {
-        const L1L2Point p = {(2.0 * (i % COLUMNS) / (COLUMNS - 1) - 1.0) * shape->half_w,
-                             2.0 * l1l2_residual_band(i / COLUMNS) * shape->half_h};
-        const L1L2Point d = l1l2_residual_at(shape, r, p);
+        const L1L2Point p = sample(shape, i), d = l1l2_residual_at(shape, r, p);
         a += p.x * d.x + p.y * d.y, b += p.x * d.y - p.y * d.x;
         x += d.x / POINTS, y += d.y / POINTS;
         norm += p.x * p.x + p.y * p.y;
@@ -84,6 +90,17 @@ L1L2Mat l1l2_residual_split(const L1L2ResidualShape *shape, L1L2Residual *r)
         r->p[3] -= b, r->p[4] -= a, r->p[5] -= y;
     }
     return (L1L2Mat){{a, -b, x, b, a, y, 0.0, 0.0, 0.0}};
+}
+
+double l1l2_residual_stretch(const L1L2ResidualShape *shape, const L1L2Residual *r)
+{
+    double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0, norm_x = 0.0, norm_y = 0.0;
+    for (int i = 0; i < POINTS; i++) {
+        const L1L2Point p = sample(shape, i), d = l1l2_residual_at(shape, r, p);
+        xx += p.x * d.x, xy += p.y * d.x, yx += p.x * d.y, yy += p.y * d.y;
+        norm_x += p.x * p.x, norm_y += p.y * p.y;
+    }
+    return hypot(xx / norm_x - yy / norm_y, xy / norm_y + yx / norm_x);
 }
 
 double l1l2_residual_reach(const L1L2ResidualShape *shape, const L1L2Residual *r)

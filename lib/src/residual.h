@@ -36,19 +36,22 @@ typedef struct L1L2Residual {
     double p[L1L2_RESIDUAL_SIZE]; /* of a homography the first 8; the rest 0 */
 } L1L2Residual;
 
-/* Parts of the points of which each is told by a fit to the others. */
+/* What tells how much of a residual is true: of the points, parts each of which is told by a fit to the others; and the
+ * camera, whose motions foretell it (residual_cause.c). */
 enum {
     L1L2_DIVISION_HALVES, /* every second point */
     L1L2_DIVISION_THIRDS, /* of every row: left, middle, right */
     L1L2_DIVISION_RIMS,   /* of every row: the inner half and the outer */
-    L1L2_DIVISIONS
+    L1L2_DIVISIONS,
+    L1L2_WITNESS_CAMERA = L1L2_DIVISIONS,
+    L1L2_WITNESSES
 };
 
-/* From one frame to the next, and how much of the points' displacements it explains, by division: tested on points that
- * were left out of the fit, so that noise explains nothing. Sums of squares, weighted. */
+/* From one frame to the next, and how much of the displacements each witness explains, of all: tested on points or a
+ * frame left out of the fit, so that noise explains nothing. Sums of squares, weighted. */
 typedef struct L1L2ResidualStep {
     L1L2Residual r;
-    double explained[L1L2_DIVISIONS], all[L1L2_DIVISIONS];
+    double explained[L1L2_WITNESSES], all[L1L2_WITNESSES];
 } L1L2ResidualStep;
 
 typedef struct L1L2ResidualShape {
@@ -70,6 +73,9 @@ L1L2Point l1l2_residual_at(const L1L2ResidualShape *shape, const L1L2Residual *r
 
 /* Takes the nearest similarity out of r and returns it, as what is to be added to a map. */
 L1L2Mat l1l2_residual_split(const L1L2ResidualShape *shape, L1L2Residual *r);
+
+/* How much longer the frame becomes in one direction than across it, by the nearest affinity: a part of its length. */
+double l1l2_residual_stretch(const L1L2ResidualShape *shape, const L1L2Residual *r);
 
 /* The longest displacement at the frame's corners and the middles of its sides. */
 double l1l2_residual_reach(const L1L2ResidualShape *shape, const L1L2Residual *r);

@@ -1,13 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* Every allocation of the library's own fails once: create says so and leaves nothing behind; a running instance makes
- * none at all. */
+ * none at all. Those of the imaging library fail beside the caller, while a frame is tracked: no frame is lost. */
+#include <errno.h>
+#include <stdatomic.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <l1l2stab/l1l2stab.h>
 
 #include "checkx.h"
 #include "mem.h"
 #include "synth.h"
+
+enum { FRAMES = 40 };
 
 static int countdown, alive;
 
@@ -27,6 +32,21 @@ static void counting_free(void *p)
 }
 
 static const L1L2MemHook hook = {counting_alloc, counting_free};
+
+/* What the imaging library's pictures come from: this one, not the C library's, since the program is searched first. */
+static atomic_bool failing;
+static atomic_int refused;
+
+int posix_memalign(void **p, size_t alignment, size_t size)
+{
+    *p = NULL;
+    if (failing) {
+        refused++;
+        return ENOMEM;
+    }
+    *p = aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    return *p ? 0 : ENOMEM;
+}
 
 static L1L2StabConfig small_config(void)
 {
@@ -69,7 +89,6 @@ START_TEST(a_running_instance_takes_no_memory)
     SynthConfig scene = synth_defaults();
     scene.width = cfg.width, scene.height = cfg.height;
     Synth *synth = synth_new(&scene);
-    enum { FRAMES = 40 };
     SynthPicture in[FRAMES];
     SynthPicture out = synth_picture_new(cfg.format, cfg.width, cfg.height);
     L1L2StabFrame frame = {0}, picture = {0};
@@ -99,13 +118,118 @@ START_TEST(a_running_instance_takes_no_memory)
 }
 END_TEST
 
-int main(void)
+/* Frames 0 to FRAMES - 1 of a clip; all calls that fail are made again. */
+typedef struct Run {
+    L1L2Stab *s;
+    SynthPicture in[FRAMES], out;
+    int errors, pulled, released;
+    unsigned flags[FRAMES];
+} Run;
+
+static void count_release(void *run)
 {
+    ((Run *)run)->released++;
+}
+
+/* Whether a call has to be made again: its error is that of a frame before, which is told once. */
+static bool again(Run *run, L1L2StabResult result)
+{
+    if (result != L1L2STAB_ERR_NOMEM)
+        return false;
+    ck_assert(failing);
+    failing = false;
+    run->errors++;
+    return true;
+}
+
+static void pull_all(Run *run)
+{
+    L1L2StabFrame picture = {0};
+    L1L2StabInfo info;
+    L1L2StabResult result;
+    memcpy(picture.data, run->out.data, sizeof picture.data);
+    memcpy(picture.stride, run->out.stride, sizeof picture.stride);
+    while ((result = l1l2stab_pull(run->s, &picture, &info)) == L1L2STAB_OK || again(run, result))
+        if (result == L1L2STAB_OK) {
+            ck_assert_int_eq(picture.pts, run->pulled);
+            run->flags[run->pulled++] = info.flags;
+        }
+    ck_assert_int_ge(result, L1L2STAB_OK);
+}
+
+static void run_failing(Run *run, int threads, int first_failing)
+{
+    L1L2StabConfig cfg = small_config();
+    cfg.threads = threads;
+    *run = (Run){0};
+    SynthConfig scene = synth_defaults();
+    scene.width = cfg.width, scene.height = cfg.height;
+    Synth *synth = synth_new(&scene);
+    run->out = synth_picture_new(cfg.format, cfg.width, cfg.height);
+    failing = false;
+    refused = 0;
+    ck_assert_int_eq(l1l2stab_create(&run->s, &cfg), L1L2STAB_OK);
+    for (int t = 0; t < FRAMES; t++) {
+        run->in[t] = synth_picture_new(cfg.format, cfg.width, cfg.height);
+        synth_render(synth, t, cfg.format, run->in[t].data, run->in[t].stride);
+        L1L2StabFrame frame = {.pts = t, .opaque = run, .release = count_release};
+        memcpy(frame.data, run->in[t].data, sizeof frame.data);
+        memcpy(frame.stride, run->in[t].stride, sizeof frame.stride);
+        if (t == first_failing)
+            failing = true;
+        L1L2StabResult result;
+        while (again(run, result = l1l2stab_push(run->s, &frame)))
+            ;
+        ck_assert_int_eq(result, L1L2STAB_OK);
+        pull_all(run);
+    }
+    L1L2StabResult result;
+    while (again(run, result = l1l2stab_finish(run->s)))
+        ;
+    ck_assert_int_eq(result, L1L2STAB_OK);
+    pull_all(run);
+    l1l2stab_free(&run->s);
+    synth_picture_free(&run->out);
+    for (int t = 0; t < FRAMES; t++)
+        synth_picture_free(&run->in[t]);
+    synth_free(synth);
+}
+
+START_TEST(a_frame_that_cannot_be_tracked_is_told_once_and_starts_a_path_and_none_is_lost)
+{
+    static Run run;
+    int told = 0;
+    for (int first_failing = 0; first_failing < FRAMES; first_failing += 3) {
+        run_failing(&run, 1 + _i, first_failing);
+        ck_assert_int_eq(run.errors, refused > 0);
+        ck_assert_int_eq(run.pulled, FRAMES);
+        ck_assert_int_eq(run.released, FRAMES);
+        int starts = 0;
+        for (int t = 0; t < FRAMES; t++)
+            starts += t > 0 && (run.flags[t] & L1L2STAB_INFO_PATH_START) != 0;
+        ck_assert_int_le(starts, run.errors);
+        /* The frame before may still be tracked, and one that takes no memory does not fail. */
+        for (int t = 1; t < first_failing - 1; t++)
+            ck_assert(!(run.flags[t] & L1L2STAB_INFO_PATH_START));
+        told += starts;
+    }
+    ck_assert_int_gt(told, FRAMES / 3 / 2);
+}
+END_TEST
+
+int main(int argc, char **argv)
+{
+    /* When it is loaded the imaging library decides how it allocates. */
+    if (argc > 0 && !getenv("OPENCV_ENABLE_MEMALIGN")) {
+        setenv("OPENCV_ENABLE_MEMALIGN", "1", 1);
+        execvp(argv[0], argv);
+    }
     Suite *suite = suite_create("oom");
     TCase *tcase = tcase_create("oom");
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, create_survives_the_failure_of_any_allocation);
     tcase_add_test(tcase, a_running_instance_takes_no_memory);
+    tcase_add_loop_test(tcase, a_frame_that_cannot_be_tracked_is_told_once_and_starts_a_path_and_none_is_lost, 0, 2);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

@@ -100,7 +100,7 @@ static L1L2WarpRun *find_run(const L1L2WarpConfig *cfg, int taps, int components
 {
     if (cfg->format->depth > 8)
         return (cfg->plain ? l1l2_warp_u16_run_plain : l1l2_warp_u16_run)(taps, components, cfg->format->depth);
-    return l1l2_warp_u8_run(taps, components);
+    return l1l2_warp_u8_run(components);
 }
 
 static L1L2WarpLineRun *find_line_run(const L1L2WarpConfig *cfg, int taps, int components)

@@ -3,7 +3,8 @@
  * Algorithm 1, step 5: render a frame through the map of its update transform.
  *
  * Built as coordinate generator x kernel x sample type: a generator turns a map into source positions for a run of
- * output samples, a kernel weighs the taps around each position, a sample type reads and writes them.
+ * output samples, or into the line that the run takes through the source; a kernel weighs the taps around each
+ * position, a sample type reads and writes them.
  * All planes follow one map, chroma in its own coordinates with its siting.
  * "Inside the source": a sample position that lies in the frame's rectangle; taps beyond the edge repeat the edge.
  * Levels are cut off at the ends of the depth, not of a limited range, as other scalers do: overshoot and a camera's

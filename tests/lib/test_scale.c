@@ -104,17 +104,22 @@ static const int sizes[][4] = {{854, 32, 640, 24},  {1280, 24, 640, 12}, {1920, 
                                {4099, 20, 639, 3},  {257, 2049, 3, 2},   {1366, 40, 640, 19},  {2, 2, 1, 2}};
 enum { SIZES = sizeof sizes / sizeof *sizes };
 
+static double worst_of(L1L2StabFormat format, const int *size)
+{
+    Trial t = trial_new(format, size[0], size[1], size[2], size[3]);
+    run(&t);
+    const double most = worst(&t);
+    trial_free(&t);
+    return most;
+}
+
 START_TEST(one_component_is_the_mean_of_its_area_rounded_once)
 {
     static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_I420, L1L2STAB_FORMAT_I420_10LE,
                                              L1L2STAB_FORMAT_I420_12LE, L1L2STAB_FORMAT_P010_10LE,
                                              L1L2STAB_FORMAT_GRAY16_LE};
-    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
-        Trial t = trial_new(formats[k], sizes[_i][0], sizes[_i][1], sizes[_i][2], sizes[_i][3]);
-        run(&t);
-        ck_assert_double_le(worst(&t), 0.5 + 1.0 / 128);
-        trial_free(&t);
-    }
+    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++)
+        ck_assert_double_le(worst_of(formats[k], sizes[_i]), 0.5 + 1.0 / 128);
 }
 END_TEST
 
@@ -123,12 +128,8 @@ START_TEST(packed_components_are_mixed_as_well)
     static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_BGR,  L1L2STAB_FORMAT_RGBA,      L1L2STAB_FORMAT_XRGB,
                                              L1L2STAB_FORMAT_YUY2, L1L2STAB_FORMAT_UYVY,      L1L2STAB_FORMAT_VUYA,
                                              L1L2STAB_FORMAT_AYUV, L1L2STAB_FORMAT_RGBA64_LE, L1L2STAB_FORMAT_AYUV64};
-    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
-        Trial t = trial_new(formats[k], sizes[_i][0], sizes[_i][1], sizes[_i][2], sizes[_i][3]);
-        run(&t);
-        ck_assert_double_le(worst(&t), 0.5 + 1.0 / 32);
-        trial_free(&t);
-    }
+    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++)
+        ck_assert_double_le(worst_of(formats[k], sizes[_i]), 0.5 + 1.0 / 32);
 }
 END_TEST
 

@@ -32,7 +32,7 @@ static void set_columns(L1L2WarpLine *line, int taps)
     line->first = (int)(first->at >> L1L2_WARP_STEP_BITS) - (taps / 2 - 1);
     line->columns = (int)(end >> L1L2_WARP_STEP_BITS) + taps / 2 - line->first + 1;
     for (int k = 0; k < line->along_pieces; k++)
-        line->along[k].at -= (int64_t)line->first << L1L2_WARP_STEP_BITS;
+        line->along[k].at -= (int64_t)line->first * ((int64_t)1 << L1L2_WARP_STEP_BITS);
 }
 
 bool l1l2_warp_affine_line(const L1L2WarpAffine *affine, int taps, int u, int v, int count, L1L2WarpLine *line)

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Whether a sample is ever taken from outside the source picture: every node of the mesh of every frame of a clip, for
+ * crop ratios from 0.5 to 0.99, without step 4 and with it. Cells are bilinear, so the nodes tell about every sample.
+ *
+ * usage: gst-launch-1.0 -q filesrc location=CLIP ! decodebin ! videoconvert ! video/x-raw,format=GRAY8 ! fdsink |
+ *        bench_inclusion WIDTH HEIGHT [FRAMES_PER_SECOND]      (WIDTH a multiple of 4: rows without padding)
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "motion.h"
+#include "path.h"
+#include "wobble.h"
+
+enum { MODELS = 3, MAX_FRAMES = 10000, WINDOW = 150 };
+static const double ratios[] = {0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99};
+enum { RATIOS = sizeof ratios / sizeof *ratios };
+
+typedef struct Clip {
+    int width, height, frames;
+    double frame_rate;
+    L1L2MotionResult *motion[MODELS]; /* of each frame */
+} Clip;
+
+typedef struct Count {
+    long frames, bent, nodes, outside;
+    double farthest; /* that a node was moved by step 4, px */
+} Count;
+
+static void *must(void *memory)
+{
+    if (!memory)
+        exit(EXIT_FAILURE);
+    return memory;
+}
+
+static void analyse(Clip *clip, FILE *in)
+{
+    const L1L2StabLogger log = {0};
+    const size_t size = (size_t)clip->width * (size_t)clip->height;
+    uint8_t *picture = must(malloc(size));
+    L1L2Motion *motion[MODELS];
+    for (int model = 0; model < MODELS; model++) {
+        const L1L2MotionConfig cfg = {
+            .format = l1l2_format_info(L1L2STAB_FORMAT_GRAY8), .width = clip->width, .height = clip->height,
+            .analysis_size = 640, .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .seed = 1, .log = &log,
+            .rolling_shutter = (L1L2StabRollingShutter)model,
+        };
+        clip->motion[model] = must(calloc(MAX_FRAMES, sizeof *clip->motion[model]));
+        if (l1l2_motion_create(&motion[model], &cfg) != L1L2STAB_OK)
+            exit(EXIT_FAILURE);
+    }
+    for (; clip->frames < MAX_FRAMES && fread(picture, 1, size, in) == size; clip->frames++)
+        for (int model = 0; model < MODELS; model++)
+            if (l1l2_motion_push(motion[model], picture, clip->width, clip->frames == 0,
+                                 &clip->motion[model][clip->frames]) != L1L2STAB_OK)
+                exit(EXIT_FAILURE);
+    for (int model = 0; model < MODELS; model++)
+        l1l2_motion_free(motion[model]);
+    free(picture);
+}
+
+static void check(const L1L2WarpMesh *mesh, double half_w, double half_h, Count *count)
+{
+    for (int i = 0; i < mesh->columns * mesh->rows; i++)
+        count->outside += !(fabs(mesh->node[i].x) <= half_w && fabs(mesh->node[i].y) <= half_h);
+    count->nodes += mesh->columns * mesh->rows;
+}
+
+static void run(const Clip *clip, int model, double ratio, Count *count)
+{
+    const L1L2StabLogger log = {0};
+    const double diagonal_px = hypot(clip->width, clip->height), rounding_px = 1e-6;
+    const L1L2PathConfig path_cfg = {
+        .width = clip->width, .height = clip->height, .lambda = 0.5, .frame_rate = clip->frame_rate,
+        .crop_ratio = ratio, .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
+        .model = L1L2STAB_MOTION_MODEL_SIMILARITY,
+    };
+    const L1L2WobbleConfig wobble_cfg = {(L1L2StabRollingShutter)model, clip->width, clip->height, clip->width,
+                                         clip->height, WINDOW};
+    L1L2Path *path;
+    L1L2Wobble *wobble;
+    L1L2WarpMesh plain;
+    if (l1l2_path_create(&path, &path_cfg) != L1L2STAB_OK || l1l2_wobble_create(&wobble, &wobble_cfg) != L1L2STAB_OK ||
+        !l1l2_warp_mesh_init(&plain, clip->width, clip->height))
+        exit(EXIT_FAILURE);
+    for (int t = 0; t <= clip->frames; t++) {
+        const L1L2MotionResult *m = &clip->motion[model][t < clip->frames ? t : 0];
+        const bool starts_path = m->model == L1L2STAB_MODEL_NONE;
+        if (t < clip->frames) {
+            l1l2_path_push(path, &m->F, starts_path);
+            l1l2_wobble_push(wobble, &m->F, m->has_residual ? &m->residual : NULL, starts_path);
+        } else {
+            l1l2_path_finish(path);
+        }
+        for (L1L2PathFrame f; l1l2_path_pull(path, &f); count->frames++) {
+            const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f.B, diagonal_px), l1l2_mat_diagonal(ratio, ratio));
+            double reach;
+            l1l2_wobble_pull(wobble);
+            const L1L2WarpMesh *bent = l1l2_wobble_bend(wobble, &map, 1.0, &reach);
+            l1l2_warp_mesh_set(&plain, &map);
+            check(bent ? bent : &plain, 0.5 * clip->width + (bent ? 0.0 : rounding_px),
+                  0.5 * clip->height + (bent ? 0.0 : rounding_px), count);
+            count->bent += bent != NULL;
+            count->farthest = fmax(count->farthest, reach);
+        }
+    }
+    l1l2_path_free(path);
+    l1l2_wobble_free(wobble);
+    l1l2_warp_mesh_clear(&plain);
+}
+
+int main(int argc, char **argv)
+{
+    static const char *const names[MODELS] = {"none", "homography", "mixture"};
+    if (argc < 3) {
+        printf("usage: bench_inclusion WIDTH HEIGHT [FRAMES_PER_SECOND] < rows of grey bytes\n");
+        return EXIT_SUCCESS;
+    }
+    Clip clip = {.width = atoi(argv[1]), .height = atoi(argv[2]), .frame_rate = argc > 3 ? atof(argv[3]) : 30.0};
+    analyse(&clip, stdin);
+    for (int model = 0; model < MODELS; model++) {
+        Count count = {0};
+        for (int r = 0; r < RATIOS; r++)
+            run(&clip, model, ratios[r], &count);
+        printf("%-10s  %6ld frames, %6ld bent by %6.2f px at most: %ld of %ld nodes outside\n", names[model],
+               count.frames, count.bent, count.farthest, count.outside, count.nodes);
+        free(clip.motion[model]);
+    }
+    return EXIT_SUCCESS;
+}

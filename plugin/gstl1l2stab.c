@@ -219,7 +219,7 @@ gst_l1l2_stab_open_files (GstL1L2Stab * self)
       GST_ELEMENT_CAST (self), motion_in, motion_out);
   gst_l1l2_stab_settings_in_use (&self->settings, &settings);
   if (ok && motion_in
-      && settings.rolling_shutter != L1L2STAB_ROLLING_SHUTTER_NONE)
+      && settings.rolling_shutter == L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY)       /* asked for: it is not the default */
     GST_ELEMENT_WARNING (self, LIBRARY, SETTINGS,
         ("motion-in has nothing for rolling-shutter to go by."), (NULL));
   g_free (motion_in);

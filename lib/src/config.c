@@ -32,7 +32,7 @@ void l1l2stab_config_init(L1L2StabConfig *cfg, size_t struct_size)
         .logger = {.max_level = L1L2STAB_LOG_INFO},
         .weights = {1.0, 1.0, 1.0},
         .motion_model = L1L2STAB_MOTION_MODEL_SIMILARITY,
-        .rolling_shutter = L1L2STAB_ROLLING_SHUTTER_NONE,
+        .rolling_shutter = L1L2STAB_ROLLING_SHUTTER_MIXTURE,
     };
     if (!cfg || struct_size < sizeof cfg->struct_size)
         return;

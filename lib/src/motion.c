@@ -238,7 +238,7 @@ static void fit_residual(L1L2Motion *m, L1L2Rung *rung, L1L2MotionResult *out)
         return;
     const int n = trusted(m, agrees, pairs, agreeing, from);
     const int inliers = l1l2_motion_residual_fit(&m->shape, pairs, n, threshold, agreeing, &F, &out->residual);
-    const bool adopted = inliers >= (found ? 1 : min_share * count) && explains_all(m, &out->residual);
+    const bool adopted = inliers > 0 && (found || inliers >= min_share * count) && explains_all(m, &out->residual);
     out->has_residual = found ? inliers > 0 : adopted;
     if (!adopted)
         return;

@@ -174,20 +174,25 @@ GST_START_TEST (files_that_cannot_be_opened_are_an_error_at_the_start)
 
 GST_END_TEST;
 
-GST_START_TEST (a_rolling_shutter_without_analysis_is_a_warning)
+GST_START_TEST (a_rolling_shutter_asked_for_without_analysis_is_a_warning)
 {
-  GstHarness *h = harness_new ("in", NULL);
-  GstMessage *message;
+  gint shutter;
 
   write_pans (TRUE);
-  g_object_set (h->element, "rolling-shutter",
-      L1L2STAB_ROLLING_SHUTTER_MIXTURE, NULL);
-  play (h);
-  message = stab_harness_message (h, GST_MESSAGE_WARNING);
-  fail_unless (message != NULL);
-  gst_message_unref (message);
-  push_frame (h, 0);
-  stab_harness_free (h);
+  for (shutter = L1L2STAB_ROLLING_SHUTTER_NONE;
+      shutter <= L1L2STAB_ROLLING_SHUTTER_MIXTURE; shutter++) {
+    GstHarness *h = harness_new ("in", NULL);
+    GstMessage *message;
+
+    g_object_set (h->element, "rolling-shutter", shutter, NULL);
+    play (h);
+    message = stab_harness_message (h, GST_MESSAGE_WARNING);
+    fail_unless_equals_int (message != NULL,
+        shutter == L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY);
+    gst_clear_message (&message);
+    push_frame (h, 0);
+    stab_harness_free (h);
+  }
 }
 
 GST_END_TEST;
@@ -235,7 +240,7 @@ motionin_suite (void)
   tcase_add_loop_test (tc, a_faulty_file_stops_the_start_and_the_error_says_where, 0,
       G_N_ELEMENTS (faulty));
   tcase_add_test (tc, files_that_cannot_be_opened_are_an_error_at_the_start);
-  tcase_add_test (tc, a_rolling_shutter_without_analysis_is_a_warning);
+  tcase_add_test (tc, a_rolling_shutter_asked_for_without_analysis_is_a_warning);
   tcase_add_test (tc, frames_of_another_size_or_rate_or_time_are_refused);
   return s;
 }

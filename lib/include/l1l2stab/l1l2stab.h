@@ -219,7 +219,7 @@ typedef struct L1L2StabConfig {
     double weights[3];             /* of |DP|, |D2P|, |D3P|, (0, 1000]; default 1, 1, 1 (eq. 5); G2011 has 10, 1, 100 */
     L1L2StabSolver solver;         /* default AUTO */
     L1L2StabMotionModel motion_model; /* default SIMILARITY */
-    L1L2StabRollingShutter rolling_shutter; /* default NONE */
+    L1L2StabRollingShutter rolling_shutter; /* default MIXTURE */
 } L1L2StabConfig;
 
 /* The path starts anew at this frame: nothing before it belongs to the same shot. */

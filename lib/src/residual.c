@@ -14,15 +14,17 @@ double l1l2_residual_band(int band)
     return (band + 0.5) / L1L2_BANDS - 0.5;
 }
 
-/* Gaussians as wide as a band is high, which sum to 1 at every row. */
+/* Gaussians as wide as a band is high, which sum to 1 at every row. From one to the next they change by a factor that
+ * itself falls by e: two exponentials make all. */
 static void weigh_bands(double row, double weight[L1L2_BANDS])
 {
-    double sum = 0.0;
-    row = fmin(fmax(row, -1.0), 1.0);
+    const double place = (fmin(fmax(row, -1.0), 1.0) - l1l2_residual_band(0)) * L1L2_BANDS, fall = 0.36787944117144233;
+    double gauss = exp(-0.5 * place * place), factor = exp(place - 0.5), sum = 0.0;
     for (int k = 0; k < L1L2_BANDS; k++) {
-        const double distance = (row - l1l2_residual_band(k)) * L1L2_BANDS;
-        weight[k] = exp(-0.5 * distance * distance);
-        sum += weight[k];
+        weight[k] = gauss;
+        sum += gauss;
+        gauss *= factor;
+        factor *= fall;
     }
     for (int k = 0; k < L1L2_BANDS; k++)
         weight[k] /= sum;

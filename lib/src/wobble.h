@@ -12,8 +12,8 @@
  * e is nothing, and mixes by distance: that leaves each key frame its own skew. The leak leaves none (measured: the
  * rows' own error is 3 to 7 times smaller), and has no key frames to choose.
  *
- * Noise and depth are no wobble: as far as the differences of many frames do not explain points that were left out of
- * their fits, the changes of k_t stand for them.
+ * Noise is no wobble, nor is what moves by itself: as far as the differences of many frames do not explain points that
+ * were left out of their fits, or do not follow from the camera's motions, the changes of k_t stand for them.
  *
  * k_t is nothing for a homography. For a mixture it is the skew that the camera's speed makes, the camera path between
  * the frames' times, by the rows' readout: the one thing that m_t cannot tell and the path can. The readout, one number

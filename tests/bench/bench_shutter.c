@@ -9,7 +9,8 @@
  * Then clips with a global shutter, in which something that moves by itself covers 40 % of the picture: bend is how far
  * that moves a sample from where B_t has it, px.
  *
- * usage: bench_shutter [FRAMES [AMPLITUDE_PX [PICTURE]]]     PICTURE: a PPM of the last clip, with its mesh
+ * usage: bench_shutter [FRAMES [AMPLITUDE_PX [PICTURE]]]     PICTURE: a PPM of a slow mover at a side, with the
+ *                                                    mesh of the mixture
  */
 #include <math.h>
 #include <stdio.h>
@@ -204,7 +205,7 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
     return errors;
 }
 
-static void run_movers(int frames, double x)
+static void run_movers(int frames, double x, const char *picture)
 {
     static const double speeds[] = {2, 5, 15};
     printf("\n40 %% of the picture moves by itself, %g widths from the middle; wobble / bend, px\n", x);
@@ -215,6 +216,7 @@ static void run_movers(int frames, double x)
         scene.noise = 2.0;
         scene.foreground = 0.4, scene.movers = 1, scene.mover_speed = speeds[v], scene.mover_x = x;
         printf("%6.0f  ", speeds[v]);
+        picture_path = v == 0 ? picture : NULL;
         for (int model = 0; model < 3; model++) {
             const Errors e = run(&scene, frames, (L1L2StabRollingShutter)model);
             printf("  %6.3f / %-6.3f", sqrt(e.wobble / e.wobbles), e.bend);
@@ -248,8 +250,7 @@ int main(int argc, char **argv)
             printf("  %5.1f\n", found * 1000.0 / scene.fps);
             fflush(stdout);
         }
-    run_movers(frames, 0.2);
-    picture_path = argc > 3 ? argv[3] : NULL;
-    run_movers(frames, 0.0);
+    run_movers(frames, 0.0, NULL);
+    run_movers(frames, 0.2, argc > 3 ? argv[3] : NULL);
     return EXIT_SUCCESS;
 }

@@ -159,9 +159,9 @@ static void copy_band(const PlaneJob *job, int band)
 static void fetch(const PlaneJob *job, int column, int row)
 {
 #if defined(__GNUC__)
-    row += ROWS_AHEAD;
-    if (column >= 0 && column < job->src.width && row >= 0 && row < job->src.height)
-        __builtin_prefetch(job->src.data + row * job->src.stride + column * job->sample_bytes);
+    /* It may lie outside: nothing is read. */
+    const ptrdiff_t from = (row + ROWS_AHEAD) * job->src.stride + (ptrdiff_t)column * job->sample_bytes;
+    __builtin_prefetch((const void *)((uintptr_t)job->src.data + (uintptr_t)from));
 #endif
 }
 
@@ -175,14 +175,16 @@ static void fetch_output(const PlaneJob *job, int u, int v, int count)
 }
 
 /* Every cache line of the source, that of the last column too. */
-static void fetch_line(const PlaneJob *job, const L1L2WarpLine *line)
+static void fetch_line(const PlaneJob *job, const L1L2WarpLine *line, int taps)
 {
     const int step = CACHE_LINE / job->sample_bytes;
     for (int k = 0; k < line->down_pieces; k++) {
         const L1L2WarpPiece *piece = &line->down[k];
         const int end = k + 1 < line->down_pieces ? piece[1].from : line->columns + step - 1;
-        for (int i = piece->from; i < end; i += step)
-            fetch(job, line->first + i, l1l2_warp_piece_position(piece, i) >> L1L2_WARP_PHASE_BITS);
+        for (int i = piece->from; i < end; i += step) {
+            const int column = taps > 2 ? i : l1l2_warp_piece_position(&line->along[k], i) >> L1L2_WARP_PHASE_BITS;
+            fetch(job, line->first + column, l1l2_warp_piece_position(piece, i) >> L1L2_WARP_PHASE_BITS);
+        }
     }
 }
 
@@ -195,7 +197,7 @@ static void render_run(const PlaneJob *job, const L1L2WarpKernel *kernel, const 
     fetch_output(job, u, v, count);
     if (job->line_run && (job->mesh.mesh ? l1l2_warp_mesh_line(&job->mesh, cells, kernel->taps, v, &line)
                                          : l1l2_warp_affine_line(&job->affine, kernel->taps, u, v, count, &line))) {
-        fetch_line(job, &line);
+        fetch_line(job, &line, kernel->taps);
         job->line_run(&job->src, kernel, &line, dst);
         return;
     }

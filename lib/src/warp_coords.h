@@ -86,7 +86,7 @@ typedef struct L1L2WarpLine {
     int count, first, columns; /* samples; the source columns first .. first + columns - 1, some of them outside */
     int along_pieces, down_pieces;
     L1L2WarpPiece along[L1L2_WARP_MAX_CELLS]; /* by sample of the run: columns from `first` on */
-    L1L2WarpPiece down[L1L2_WARP_MAX_CELLS];  /* by column from `first` on: rows */
+    L1L2WarpPiece down[L1L2_WARP_MAX_CELLS];  /* by column from `first` on: rows. With two taps, by sample */
 } L1L2WarpLine;
 
 /* They write the positions of a run of output samples of row v: (u .. u + count - 1, v), or what the cells cover; and

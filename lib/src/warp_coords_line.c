@@ -48,10 +48,12 @@ bool l1l2_warp_affine_line(const L1L2WarpAffine *affine, int taps, int u, int v,
     line->along_pieces = line->down_pieces = 1;
     line->along[0] = (L1L2WarpPiece){to_steps(start) + HALF_PHASE_OF_STEPS, (int32_t)to_steps(x[0]), 0};
     set_columns(line, taps);
-    const double row = y[0] * u + y[1] * v + y[2] + slope * (line->first - start);
+    const bool by_column = taps > 2;
+    const double row = y[0] * u + y[1] * v + y[2] + (by_column ? slope * (line->first - start) : 0.0);
     if (!(fabs(row) <= FAR))
         return false;
-    line->down[0] = (L1L2WarpPiece){to_steps(row) + HALF_PHASE_OF_STEPS, (int32_t)to_steps(slope), 0};
+    const double step = by_column ? slope : y[0];
+    line->down[0] = (L1L2WarpPiece){to_steps(row) + HALF_PHASE_OF_STEPS, (int32_t)to_steps(step), 0};
     return true;
 }
 
@@ -78,8 +80,10 @@ bool l1l2_warp_mesh_line(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *ce
     bool fits = true;
     cut_cells(plane, cells, v, x, y);
     for (int k = 0; k < cells->count; k++) {
-        const double step = (x[k + 1] - x[k]) * cells->slope;
-        fits &= fits_line(step, (y[k + 1] - y[k]) * cells->slope);
+        const double step = (x[k + 1] - x[k]) * cells->slope, rise = (y[k + 1] - y[k]) * cells->slope;
+        fits &= fits_line(step, rise);
+        line->down[k] = (L1L2WarpPiece){to_steps(y[k] + cells->offset[k] * rise) + HALF_PHASE_OF_STEPS,
+                                        (int32_t)to_steps(fits ? rise : 0.0), cells->from[k]};
         line->along[k] = (L1L2WarpPiece){to_steps(x[k] + cells->offset[k] * step) + HALF_PHASE_OF_STEPS,
                                          (int32_t)to_steps(fits ? step : 0.0), cells->from[k]};
     }
@@ -89,6 +93,9 @@ bool l1l2_warp_mesh_line(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *ce
     line->along_pieces = cells->count;
     line->count = cells->from[cells->count];
     set_columns(line, taps);
-    set_down(line, x, y, cells->count);
+    line->down[0].at += (int64_t)cells->skipped * line->down[0].step;
+    line->down_pieces = cells->count;
+    if (taps > 2)
+        set_down(line, x, y, cells->count);
     return true;
 }

@@ -3,6 +3,7 @@
 #include "warp_line.h"
 
 #include "warp_line_impl.h"
+#include "warp_linear.h"
 
 SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpLine *line, uint8_t *dst,
                      const int taps, const int components)
@@ -16,7 +17,7 @@ SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, con
                     end_of(line->along, k, line->along_pieces, line->count), values, dst, taps, components);
 }
 
-DEFINE_RUNS(l1l2_warp_line_run_plain)
+DEFINE_RUNS(l1l2_warp_line_run_plain, l1l2_warp_linear_run_plain)
 
 L1L2WarpLineRun *l1l2_warp_line_run(int taps, int components)
 {

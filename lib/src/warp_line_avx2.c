@@ -1,78 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Lines for AVX2: sixteen lanes of 16 bits at a time, the same bytes as plain C.
- *
- * Down, a lane is a component of a column, as they lie in memory. Along, it is a component of a sample: 16, 8 or 4
- * samples of 1, 2 or 3..4 components, in quarters of four lanes, each of which has two taps within eight values of the
- * line, its window. A shuffle puts them side by side, pmaddwd weighs them.
+ * Lines for AVX2: sixteen lanes of 16 bits at a time, the same bytes as plain C. Along, samples are in quarters of four
+ * lanes, each of which has two taps within eight values of the line, its window. A shuffle puts them side by side,
+ * pmaddwd weighs them.
  */
-#include <immintrin.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "warp_lanes_avx2.h"
 #include "warp_line_impl.h"
+#include "warp_linear.h"
 
-typedef struct Weights {
+typedef struct TapWeights {
     __m256i tap[L1L2_WARP_MAX_TAPS];
-} Weights;
-
-SPECIALIZED __m256i words(int value)
-{
-    return _mm256_set1_epi16((short)value);
-}
-
-SPECIALIZED __m256i load_halves(const void *low, const void *high)
-{
-    return _mm256_inserti128_si256(_mm256_castsi128_si256(_mm_loadu_si128(low)), _mm_loadu_si128(high), 1);
-}
-
-/* Words 0..7 of v to lanes: each as often as it has components; down, three lie close, along, they take four lanes. */
-SPECIALIZED __m256i spread(__m128i v, const int components, const bool down)
-{
-    const __m256i twice = _mm256_setr_epi8(0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7,
-                                           8, 9, 8, 9, 10, 11, 10, 11, 12, 13, 12, 13, 14, 15, 14, 15);
-    const __m256i close = _mm256_setr_epi8(0, 1, 0, 1, 0, 1, 2, 3, 2, 3, 2, 3, 4, 5, 4, 5,
-                                           4, 5, 6, 7, 6, 7, 6, 7, 6, 7, 6, 7, 6, 7, 6, 7);
-    const __m256i four_times = _mm256_setr_epi8(0, 1, 0, 1, 0, 1, 0, 1, 2, 3, 2, 3, 2, 3, 2, 3,
-                                                4, 5, 4, 5, 4, 5, 4, 5, 6, 7, 6, 7, 6, 7, 6, 7);
-    return _mm256_shuffle_epi8(_mm256_broadcastsi128_si256(v),
-                               components == 2 ? twice : components == 3 && down ? close : four_times);
-}
-
-/* Sixteen or eight values of 32 bits, one a column or sample, to lanes. */
-SPECIALIZED __m256i to_lanes(__m256i a, __m256i b, const int components, const bool down)
-{
-    if (components == 1)
-        return _mm256_permute4x64_epi64(_mm256_packs_epi32(a, b), _MM_SHUFFLE(3, 1, 2, 0));
-    return spread(_mm_packs_epi32(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1)), components, down);
-}
-
-/* Even steps: what a group's positions are made of. */
-typedef struct Steps {
-    int64_t at;   /* the group's first position */
-    int32_t step;
-    __m256i a, b; /* from there to its columns or samples */
-} Steps;
-
-SPECIALIZED Steps steps_of(const L1L2WarpPiece *piece)
-{
-    const __m256i each = _mm256_set1_epi32(piece->step);
-    return (Steps){piece->at, piece->step, _mm256_mullo_epi32(each, _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7)),
-                   _mm256_mullo_epi32(each, _mm256_setr_epi32(8, 9, 10, 11, 12, 13, 14, 15))};
-}
-
-/* Its positions, cut to phases. Down they may be negative, along they need all bits. */
-SPECIALIZED __m256i positions_from(const Steps *steps, int32_t first, const int components, const bool down)
-{
-    enum { CUT = L1L2_WARP_STEP_BITS - L1L2_WARP_PHASE_BITS };
-    const __m256i from = _mm256_set1_epi32(first);
-    const __m256i a = _mm256_add_epi32(from, steps->a), b = _mm256_add_epi32(from, steps->b);
-    return down ? to_lanes(_mm256_srai_epi32(a, CUT), _mm256_srai_epi32(b, CUT), components, down)
-                : to_lanes(_mm256_srli_epi32(a, CUT), _mm256_srli_epi32(b, CUT), components, down);
-}
+} TapWeights;
 
 /* As set_cubic() of warp_kernel.c. */
-SPECIALIZED Weights weigh_cubic(__m256i phase)
+SPECIALIZED TapWeights weigh_cubic(__m256i phase)
 {
     const __m256i t = _mm256_slli_epi16(phase, 15 - L1L2_WARP_PHASE_BITS);
     const __m256i n = _mm256_sub_epi16(words(-32768), t); /* where it does not fit, t is 0, and so are all products */
@@ -88,13 +31,13 @@ SPECIALIZED Weights weigh_cubic(__m256i phase)
                                           _mm256_add_epi16(_mm256_add_epi16(before, after),
                                                            _mm256_add_epi16(left, right)));
     const __m256i is_right = _mm256_cmpgt_epi16(t, words(1 << 14));
-    return (Weights){{before, _mm256_add_epi16(left, _mm256_andnot_si256(is_right, rest)),
+    return (TapWeights){{before, _mm256_add_epi16(left, _mm256_andnot_si256(is_right, rest)),
                       _mm256_add_epi16(right, _mm256_and_si256(is_right, rest)), after}};
 }
 
 /* From the table: the rows of sixteen phases become one vector for each of the six taps. The phases are found once
  * more, for it takes long to get them out of a vector. */
-SPECIALIZED Weights weigh_lanczos(const L1L2WarpKernel *kernel, const Steps *steps, const int components,
+SPECIALIZED TapWeights weigh_lanczos(const L1L2WarpKernel *kernel, const Steps *steps, const int components,
                                   const bool down)
 {
     enum { CUT = L1L2_WARP_STEP_BITS - L1L2_WARP_PHASE_BITS };
@@ -116,7 +59,7 @@ SPECIALIZED Weights weigh_lanczos(const L1L2WarpKernel *kernel, const Steps *ste
         four[3 * i + 1] = _mm256_unpackhi_epi32(two[4 * i], two[4 * i + 2]);     /* taps 2, 3 */
         four[3 * i + 2] = _mm256_unpacklo_epi32(two[4 * i + 1], two[4 * i + 3]); /* taps 4, 5 */
     }
-    Weights w;
+    TapWeights w;
     for (int k = 0; k < 3; k++) {
         w.tap[2 * k] = _mm256_unpacklo_epi64(four[k], four[3 + k]);
         w.tap[2 * k + 1] = _mm256_unpackhi_epi64(four[k], four[3 + k]);
@@ -124,16 +67,11 @@ SPECIALIZED Weights weigh_lanczos(const L1L2WarpKernel *kernel, const Steps *ste
     return w;
 }
 
-SPECIALIZED Weights weigh(const L1L2WarpKernel *kernel, const Steps *steps, __m256i position, const int taps,
+SPECIALIZED TapWeights weigh(const L1L2WarpKernel *kernel, const Steps *steps, __m256i position, const int taps,
                           const int components, const bool down)
 {
     const __m256i phase = _mm256_and_si256(position, words(L1L2_WARP_PHASES - 1));
-    if (taps == 4)
-        return weigh_cubic(phase);
-    if (taps == 6)
-        return weigh_lanczos(kernel, steps, components, down);
-    const __m256i right = _mm256_slli_epi16(phase, L1L2_WARP_WEIGHT_BITS - L1L2_WARP_PHASE_BITS);
-    return (Weights){{_mm256_sub_epi16(words(L1L2_WARP_ONE), right), right}};
+    return taps == 4 ? weigh_cubic(phase) : weigh_lanczos(kernel, steps, components, down);
 }
 
 /* Sixteen samples' sums over the rows below them. */
@@ -152,7 +90,7 @@ SPECIALIZED __m256i sum_down(const uint8_t *first, ptrdiff_t stride, const __m25
 
 /* Where the line crosses a row, `further` is 0 or 1 by lane: those with 1 have their taps a row further down. Without a
  * branch, for where a line crosses changes from row to row. */
-SPECIALIZED __m256i sum_across(const uint8_t *first, ptrdiff_t stride, const Weights *w, __m256i further,
+SPECIALIZED __m256i sum_across(const uint8_t *first, ptrdiff_t stride, const TapWeights *w, __m256i further,
                                const int taps)
 {
     const __m256i down = _mm256_sub_epi16(_mm256_setzero_si256(), further);
@@ -165,7 +103,7 @@ SPECIALIZED __m256i sum_across(const uint8_t *first, ptrdiff_t stride, const Wei
 }
 
 /* The steep line: row after row that any lane has. Some lane has the first one; no lane is further than `most`. */
-SPECIALIZED __m256i sum_steep(const uint8_t *first, ptrdiff_t stride, const Weights *w, __m256i further, int most,
+SPECIALIZED __m256i sum_steep(const uint8_t *first, ptrdiff_t stride, const TapWeights *w, __m256i further, int most,
                               const int taps)
 {
     __m256i sum = _mm256_setzero_si256();
@@ -173,11 +111,6 @@ SPECIALIZED __m256i sum_steep(const uint8_t *first, ptrdiff_t stride, const Weig
         sum = _mm256_blendv_epi8(sum, sum_down(first + row * stride, stride, w->tap, taps),
                                  _mm256_cmpeq_epi16(further, words(row)));
     return sum;
-}
-
-SPECIALIZED int group_of(const int components)
-{
-    return components == 1 ? 16 : components == 2 ? 8 : 4; /* columns, or samples */
 }
 
 /* How a piece crosses the source's rows: not at all, a group at most once, more often. */
@@ -191,7 +124,7 @@ SPECIALIZED __m256i group_down(const uint8_t *first, ptrdiff_t stride, const L1L
     const __m256i position = positions_from(steps, (int32_t)(steps->at - (row << L1L2_WARP_STEP_BITS)), components,
                                             true);
     const __m256i further = _mm256_srai_epi16(position, L1L2_WARP_PHASE_BITS);
-    const Weights w = weigh(kernel, steps, position, taps, components, true);
+    const TapWeights w = weigh(kernel, steps, position, taps, components, true);
     if (crossing == FLAT)
         return sum_down(first, stride, w.tap, taps);
     if (crossing == CROSSING)
@@ -230,7 +163,7 @@ SPECIALIZED void run_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel
 {
     const int group = group_of(components), lead = taps / 2 - 1, first = line->first;
     /* Groups have all their columns, and sixteen bytes, in the plane if they begin here. */
-    const int inside = -first, outside = src->width - first - (LINE_GROUP + components - 1) / components + 1;
+    const int inside = -first, outside = src->width - first - (LANES + components - 1) / components + 1;
     for (int k = 0; k < line->down_pieces; k++) {
         const L1L2WarpPiece *piece = &line->down[k];
         const int end = end_of(line->down, k, line->down_pieces, line->columns);
@@ -248,22 +181,6 @@ SPECIALIZED void run_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel
         else
             piece_down(src, kernel, piece, first, from, to, values, taps, components, STEEP);
         down_plain(src, kernel, first, piece, to, end, values, taps, components);
-    }
-}
-
-SPECIALIZED void store(uint8_t *dst, __m256i low, __m256i high, const int components)
-{
-    const __m256i words_of_both = _mm256_packs_epi32(low, high);
-    const __m256i bytes = _mm256_packus_epi16(words_of_both, words_of_both);
-    const __m128i group = _mm256_castsi256_si128(_mm256_permute4x64_epi64(bytes, _MM_SHUFFLE(3, 1, 2, 0)));
-    if (components == 3) {
-        const __m128i twelve = _mm_shuffle_epi8(group, _mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14,
-                                                                     -1, -1, -1, -1));
-        const uint32_t last = (uint32_t)_mm_extract_epi32(twelve, 2);
-        _mm_storel_epi64((void *)dst, twelve);
-        memcpy(dst + 8, &last, 4);
-    } else {
-        _mm_storeu_si128((void *)dst, group);
     }
 }
 
@@ -286,7 +203,7 @@ SPECIALIZED void group_along(const L1L2WarpKernel *kernel, const Steps *steps, c
     const int64_t at = steps->at, quarter_step = (int64_t)group_of(components) / 4 * steps->step;
     const __m256i position = positions_from(steps, (int32_t)(at & ((1 << L1L2_WARP_STEP_BITS) - 1)), components, false);
     const __m256i column = _mm256_srai_epi16(position, L1L2_WARP_PHASE_BITS);
-    const Weights w = weigh(kernel, steps, position, taps, components, false);
+    const TapWeights w = weigh(kernel, steps, position, taps, components, false);
 
     /* The bytes of the first pair of taps in a quarter's window. */
     const __m256i offset = _mm256_sub_epi16(column, _mm256_shufflehi_epi16(_mm256_shufflelo_epi16(column, 0), 0));
@@ -303,8 +220,9 @@ SPECIALIZED void group_along(const L1L2WarpKernel *kernel, const Steps *steps, c
     const int16_t *first[4];
     for (int q = 0; q < 4; q++)
         first[q] = values + ((at + q * quarter_step) >> L1L2_WARP_STEP_BITS) * components - (taps / 2 - 1) * components;
-    store(dst, sum_along(first[0], first[2], _mm256_unpacklo_epi16(left, right), low, taps, components),
-          sum_along(first[1], first[3], _mm256_unpackhi_epi16(left, right), high, taps, components), components);
+    store(dst, _mm256_packs_epi32(
+        sum_along(first[0], first[2], _mm256_unpacklo_epi16(left, right), low, taps, components),
+        sum_along(first[1], first[3], _mm256_unpackhi_epi16(left, right), high, taps, components)), components);
 }
 
 /* Groups overrun a piece's end where the next one writes over it; the last one's rest is left to plain C. */
@@ -331,4 +249,4 @@ SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, con
     run_along(kernel, line, values, dst, taps, components);
 }
 
-DEFINE_RUNS(l1l2_warp_line_run_avx2)
+DEFINE_RUNS(l1l2_warp_line_run_avx2, l1l2_warp_linear_run_avx2)

@@ -5,15 +5,7 @@
 
 #include "warp_line.h"
 
-enum {
-    LINE_GROUP = 16, /* values that are written at a time */
-    LINE_VALUES = 4 * L1L2_WARP_LINE_COLUMNS + LINE_GROUP
-};
-
-static inline int clamp_index(int index, int size)
-{
-    return index < 0 ? 0 : index < size ? index : size - 1;
-}
+enum { LINE_VALUES = 4 * L1L2_WARP_LINE_COLUMNS + 16 /* what is written together may overrun them */ };
 
 /* Columns from .. to - 1 of a line, all of this piece. */
 SPECIALIZED void down_plain(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int first_column,
@@ -24,10 +16,10 @@ SPECIALIZED void down_plain(const L1L2WarpPlane *src, const L1L2WarpKernel *kern
         const int32_t y = l1l2_warp_piece_position(piece, i);
         const int16_t *weight = kernel->weights + (y & (L1L2_WARP_PHASES - 1)) * l1l2_warp_kernel_stride(taps);
         const int first = (y >> L1L2_WARP_PHASE_BITS) - (taps / 2 - 1);
-        const uint8_t *column = src->data + (ptrdiff_t)clamp_index(first_column + i, src->width) * components;
+        const uint8_t *column = src->data + (ptrdiff_t)l1l2_warp_clamp(first_column + i, src->width) * components;
         int sum[4] = {0};
         for (int r = 0; r < taps; r++) {
-            const uint8_t *sample = column + clamp_index(first + r, src->height) * src->stride;
+            const uint8_t *sample = column + l1l2_warp_clamp(first + r, src->height) * src->stride;
             for (int c = 0; c < components; c++)
                 sum[c] += l1l2_warp_product((sample[c] - 128) * 256, weight[r]);
         }
@@ -69,15 +61,15 @@ static inline int end_of(const L1L2WarpPiece *piece, int k, int pieces, int end)
 #define DEFINE_RUNS_OF(taps) DEFINE_RUN(taps, 1) DEFINE_RUN(taps, 2) DEFINE_RUN(taps, 3) DEFINE_RUN(taps, 4)
 #define RUNS_OF(taps) {run_##taps##_1, run_##taps##_2, run_##taps##_3, run_##taps##_4}
 
-/* From run(src, kernel, line, dst, taps, components) the function that looks its twelve versions up. */
-#define DEFINE_RUNS(name)                                                                                             \
-    DEFINE_RUNS_OF(2)                                                                                                 \
+/* From run(src, kernel, line, dst, taps, components) and what two taps have of their own, the function that looks its
+ * twelve versions up. */
+#define DEFINE_RUNS(name, linear)                                                                                     \
     DEFINE_RUNS_OF(4)                                                                                                 \
     DEFINE_RUNS_OF(6)                                                                                                 \
     L1L2WarpLineRun *name(int taps, int components)                                                                   \
     {                                                                                                                 \
-        static L1L2WarpLineRun *const runs[3][4] = {RUNS_OF(2), RUNS_OF(4), RUNS_OF(6)};                              \
-        return runs[taps / 2 - 1][components - 1];                                                                    \
+        static L1L2WarpLineRun *const runs[2][4] = {RUNS_OF(4), RUNS_OF(6)};                                          \
+        return taps == 2 ? linear(components) : runs[taps / 2 - 2][components - 1];                                   \
     }
 
 #endif

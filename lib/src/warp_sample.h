@@ -23,6 +23,12 @@ typedef struct L1L2WarpPlane {
     int depth, shift;   /* of a component, bits: as in L1L2FormatInfo. 8-bit samples look at neither */
 } L1L2WarpPlane;
 
+/* Beyond the plane its edge is repeated. */
+static inline int l1l2_warp_clamp(int index, int size)
+{
+    return index < 0 ? 0 : index < size ? index : size - 1;
+}
+
 /* Writes count samples of all their components to dst from positions x[], y[] (fixed point of warp_coords.h); taps
  * beyond the plane repeat its edge. */
 typedef void L1L2WarpRun(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,

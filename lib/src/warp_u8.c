@@ -7,11 +7,6 @@ static inline uint8_t clamp_u8(int value)
     return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
 }
 
-static inline int clamp_index(int index, int size)
-{
-    return index < 0 ? 0 : index < size ? index : size - 1;
-}
-
 SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
                      int count, uint8_t *dst, const int components)
 {
@@ -22,10 +17,10 @@ SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, con
         const int column = (x[i] >> L1L2_WARP_PHASE_BITS) - lead, row = (y[i] >> L1L2_WARP_PHASE_BITS) - lead;
         int sum[4] = {L1L2_WARP_U8_ROUND, L1L2_WARP_U8_ROUND, L1L2_WARP_U8_ROUND, L1L2_WARP_U8_ROUND};
         for (int r = 0; r < taps; r++) {
-            const uint8_t *samples = src->data + clamp_index(row + r, src->height) * src->stride;
+            const uint8_t *samples = src->data + l1l2_warp_clamp(row + r, src->height) * src->stride;
             int row_sum[4] = {0};
             for (int k = 0; k < taps; k++) {
-                const uint8_t *sample = samples + (ptrdiff_t)clamp_index(column + k, src->width) * components;
+                const uint8_t *sample = samples + (ptrdiff_t)l1l2_warp_clamp(column + k, src->width) * components;
                 for (int c = 0; c < components; c++)
                     row_sum[c] += sample[c] * wx[k];
             }

@@ -29,13 +29,15 @@ static L1L2WarpLine random_line(L1L2Rng *rng, const L1L2WarpPlane *src, int taps
     line.columns = (l1l2_warp_piece_position(last, line.count - 1) >> L1L2_WARP_PHASE_BITS) + taps / 2 + 1;
     line.first = (int)l1l2_rng_below(rng, (uint32_t)src->width + 20) - 10;
     at = (int64_t)(between(rng, -10.0, src->height + 10.0) * UNIT);
-    for (int i = 0; i < line.columns && line.down_pieces < pieces; line.down_pieces++) {
+    for (int i = 0; i < (taps == 2 ? line.count : line.columns) && line.down_pieces < pieces; line.down_pieces++) {
+        const int k = line.down_pieces;
         const double slope = between(rng, -0.5, 0.5);
-        L1L2WarpPiece *piece = &line.down[line.down_pieces];
-        *piece = (L1L2WarpPiece){at, (int32_t)((l1l2_rng_below(rng, 2) ? slope : slope / 16) * UNIT), i};
-        const int length = 1 + (int)l1l2_rng_below(rng, 40);
-        at += (int64_t)length * piece->step;
-        i += length;
+        const int32_t step = (int32_t)((l1l2_rng_below(rng, 2) ? slope : slope / 16) * UNIT);
+        line.down[k] = (L1L2WarpPiece){at, step, i};
+        const int next = taps > 2 ? i + 1 + (int)l1l2_rng_below(rng, 40)
+                       : k + 1 < line.along_pieces ? line.along[k + 1].from : line.count;
+        at += (int64_t)(next - i) * step;
+        i = next;
     }
     return line;
 }

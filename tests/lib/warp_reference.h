@@ -79,12 +79,13 @@ static inline void find_crossing(const L1L2WarpConfig *cfg, const L1L2WarpMap *m
     }
 }
 
-/* Whether the rows of a plane are lines: warp_coords.h. */
+/* Whether a plane's columns are weighed one by one: warp_line.h. */
 static inline bool goes_by_lines(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane)
 {
     const L1L2Point a = source_position(cfg, map, plane, 0, 0), b = source_position(cfg, map, plane, 1, 0);
     const double step = b.x - a.x, slope = (b.y - a.y) / step;
-    return cfg->format->depth == 8 && (map->mesh || (step > 0 && step <= 4.0 / 3.0 && fabs(slope) <= 0.5));
+    return cfg->format->depth == 8 && cfg->interpolation != L1L2STAB_INTERPOLATION_BILINEAR &&
+           (map->mesh || (step > 0 && step <= 4.0 / 3.0 && fabs(slope) <= 0.5));
 }
 
 /* At sample (u, v), which lies at `at`, the row around which a column's taps are. */
@@ -137,7 +138,7 @@ static inline double reference(const L1L2WarpConfig *cfg, const L1L2WarpMap *map
  *   positions to 1/1024             2 * 255 * D * G / 2048
  *   weights to 14 bits, twice the rounding of each, for the nearest takes what is left over
  *                                   2 * 255 * G * taps / 16384; none for the bilinear's, which are exact
- *   products rounded to 7 bits before the others' axis   taps * G / 256
+ *   products rounded to 7 bits before the others' axis   taps * G / 256; the bilinear's rows, 2 / 256
  * Below 1.5, so that a sample is never more than 1 from the rounded exact value. Deeper samples: all but the rounding
  * grows with their range.
  */

@@ -40,11 +40,12 @@ SPECIALIZED __m256i spread_words(__m128i v, const int components, const bool dow
                                components == 2 ? twice : components == 3 && down ? close : four_times);
 }
 
-/* Sixteen or eight values of 32 bits, one a column or sample, to lanes. */
+/* Values of 32 bits, one a column or sample, to lanes: the first eight in a, or sixteen as packing wants them, by fours
+ * a, b, a, b. */
 SPECIALIZED __m256i to_lanes(__m256i a, __m256i b, const int components, const bool down)
 {
     if (components == 1)
-        return _mm256_permute4x64_epi64(_mm256_packs_epi32(a, b), _MM_SHUFFLE(3, 1, 2, 0));
+        return _mm256_packs_epi32(a, b);
     return spread_words(_mm_packs_epi32(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1)), components, down);
 }
 
@@ -52,14 +53,16 @@ SPECIALIZED __m256i to_lanes(__m256i a, __m256i b, const int components, const b
 typedef struct Steps {
     int64_t at;   /* the group's first position */
     int32_t step;
-    __m256i a, b; /* from there to its columns or samples */
+    __m256i a, b; /* from there to its columns or samples, for to_lanes() */
 } Steps;
 
-SPECIALIZED Steps steps_of(const L1L2WarpPiece *piece)
+SPECIALIZED Steps steps_of(const L1L2WarpPiece *piece, const int components)
 {
-    const __m256i each = _mm256_set1_epi32(piece->step);
-    return (Steps){piece->at, piece->step, _mm256_mullo_epi32(each, _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7)),
-                   _mm256_mullo_epi32(each, _mm256_setr_epi32(8, 9, 10, 11, 12, 13, 14, 15))};
+    const __m256i each = _mm256_set1_epi32(piece->step), eight = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m256i even = _mm256_setr_epi32(0, 1, 2, 3, 8, 9, 10, 11);
+    const __m256i odd = _mm256_setr_epi32(4, 5, 6, 7, 12, 13, 14, 15);
+    return (Steps){piece->at, piece->step, _mm256_mullo_epi32(each, components == 1 ? even : eight),
+                   _mm256_mullo_epi32(each, odd)};
 }
 
 /* Its positions, cut to phases; first: of the group, so that none is negative. */
@@ -74,8 +77,7 @@ SPECIALIZED __m256i positions_from(const Steps *steps, int32_t first, const int 
 /* One word a lane, of samples. */
 SPECIALIZED void store(uint8_t *dst, __m256i lanes, const int components)
 {
-    const __m256i bytes = _mm256_packus_epi16(lanes, lanes);
-    const __m128i group = _mm256_castsi256_si128(_mm256_permute4x64_epi64(bytes, _MM_SHUFFLE(3, 1, 2, 0)));
+    const __m128i group = _mm_packus_epi16(_mm256_castsi256_si128(lanes), _mm256_extracti128_si256(lanes, 1));
     if (components == 3) {
         const __m128i twelve = _mm_shuffle_epi8(group, _mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14,
                                                                      -1, -1, -1, -1));

@@ -140,7 +140,7 @@ SPECIALIZED void piece_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kern
     const int group = group_of(components);
     const int64_t across = (int64_t)(group - 1) * piece->step, to_low = piece->step < 0 ? across : 0;
     const uint8_t *column = src->data + (ptrdiff_t)(first_column + from) * components - (taps / 2 - 1) * src->stride;
-    Steps steps = steps_of(piece);
+    Steps steps = steps_of(piece, components);
     steps.at += (int64_t)(from - piece->from) * piece->step;
     for (int i = from; i < end; i += group) {
         const int64_t low = steps.at + to_low, row = low >> L1L2_WARP_STEP_BITS;
@@ -232,7 +232,7 @@ SPECIALIZED void run_along(const L1L2WarpKernel *kernel, const L1L2WarpLine *lin
     const int group = group_of(components), count = line->count;
     for (int k = 0; k < line->along_pieces; k++) {
         const L1L2WarpPiece *piece = &line->along[k];
-        Steps steps = steps_of(piece);
+        Steps steps = steps_of(piece, components);
         const int end = end_of(line->along, k, line->along_pieces, count);
         int i = piece->from;
         for (; i < end && i + group <= count; i += group, steps.at += (int64_t)group * steps.step)

@@ -14,7 +14,7 @@ typedef struct Taps {
     ptrdiff_t stride;
     __m256i pairs;             /* what brings each lane's taps of a row */
     __m256i share_x, share_y;  /* of the right one and of the lower one, of 2^15 */
-    __m256i further;           /* rows from the uppermost one */
+    __m256i y;                 /* from the uppermost row on, in phases */
 } Taps;
 
 SPECIALIZED __m256i lerp(__m256i a, __m256i b, __m256i share)
@@ -40,7 +40,7 @@ SPECIALIZED __m256i lerp_row(const Taps *taps, __m256i pairs)
 /* Lanes lie in two rows at most. Without a branch, for where a line crosses a row changes from row to row. */
 SPECIALIZED __m256i weigh_crossing(const Taps *taps)
 {
-    const __m256i down = _mm256_cmpeq_epi16(taps->further, words(1));
+    const __m256i down = _mm256_srai_epi16(_mm256_slli_epi16(taps->y, 15 - L1L2_WARP_PHASE_BITS), 15);
     const __m256i first = load_row(taps, 0), second = load_row(taps, 1), third = load_row(taps, 2);
     return lerp(lerp_row(taps, _mm256_blendv_epi8(first, second, down)),
                 lerp_row(taps, _mm256_blendv_epi8(second, third, down)), taps->share_y);
@@ -49,10 +49,11 @@ SPECIALIZED __m256i weigh_crossing(const Taps *taps)
 /* Or in many: `more` than one. */
 SPECIALIZED __m256i weigh_steep(const Taps *taps, int more)
 {
+    const __m256i further = _mm256_srli_epi16(taps->y, L1L2_WARP_PHASE_BITS);
     __m256i sum = _mm256_setzero_si256(), upper = lerp_row(taps, load_row(taps, 0));
     for (int row = 0; row <= more; row++) {
         const __m256i lower = lerp_row(taps, load_row(taps, row + 1));
-        sum = _mm256_blendv_epi8(sum, lerp(upper, lower, taps->share_y), _mm256_cmpeq_epi16(taps->further, words(row)));
+        sum = _mm256_blendv_epi8(sum, lerp(upper, lower, taps->share_y), _mm256_cmpeq_epi16(further, words(row)));
         upper = lower;
     }
     return sum;
@@ -62,7 +63,7 @@ SPECIALIZED __m256i weigh_steep(const Taps *taps, int more)
 SPECIALIZED Taps find_taps(const L1L2WarpPlane *src, const Steps *along, const Steps *down, int64_t row,
                            const int components)
 {
-    const __m256i phase_mask = words(L1L2_WARP_PHASES - 1);
+    const __m256i mask = words(0x7FFF);
     const int64_t column = along->at >> L1L2_WARP_STEP_BITS;
     const int64_t half = (along->at + (int64_t)(group_of(components) / 2) * along->step) >> L1L2_WARP_STEP_BITS;
     const __m256i x = positions_from(along, (int32_t)(along->at & ((1 << L1L2_WARP_STEP_BITS) - 1)), components, false);
@@ -78,9 +79,9 @@ SPECIALIZED Taps find_taps(const L1L2WarpPlane *src, const Steps *along, const S
         .stride = src->stride,
         .pairs = _mm256_add_epi16(_mm256_mullo_epi16(offset, words(components * 0x0101)),
                                   _mm256_add_epi16(component, words(components << 8))),
-        .share_x = _mm256_slli_epi16(_mm256_and_si256(x, phase_mask), 15 - L1L2_WARP_PHASE_BITS),
-        .share_y = _mm256_slli_epi16(_mm256_and_si256(y, phase_mask), 15 - L1L2_WARP_PHASE_BITS),
-        .further = _mm256_srli_epi16(y, L1L2_WARP_PHASE_BITS),
+        .share_x = _mm256_and_si256(_mm256_slli_epi16(x, 15 - L1L2_WARP_PHASE_BITS), mask),
+        .share_y = _mm256_and_si256(_mm256_slli_epi16(y, 15 - L1L2_WARP_PHASE_BITS), mask),
+        .y = y,
     };
 }
 
@@ -89,7 +90,7 @@ SPECIALIZED void render_groups(const L1L2WarpPlane *src, const L1L2WarpLine *lin
                                uint8_t *dst, const int components, const bool steep)
 {
     const int group = group_of(components);
-    Steps along = steps_of(&line->along[k]), down = steps_of(&line->down[k]);
+    Steps along = steps_of(&line->along[k], components), down = steps_of(&line->down[k], components);
     const int64_t across = (int64_t)(group - 1) * down.step, to_low = down.step < 0 ? across : 0;
     along.at += (int64_t)(from - line->along[k].from) * along.step + line->first * ((int64_t)1 << L1L2_WARP_STEP_BITS);
     down.at += (int64_t)(from - line->down[k].from) * down.step;

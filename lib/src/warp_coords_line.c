@@ -82,8 +82,9 @@ bool l1l2_warp_mesh_line(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *ce
     for (int k = 0; k < cells->count; k++) {
         const double step = (x[k + 1] - x[k]) * cells->slope, rise = (y[k + 1] - y[k]) * cells->slope;
         fits &= fits_line(step, rise);
-        line->down[k] = (L1L2WarpPiece){to_steps(y[k] + cells->offset[k] * rise) + HALF_PHASE_OF_STEPS,
-                                        (int32_t)to_steps(fits ? rise : 0.0), cells->from[k]};
+        if (taps == 2)
+            line->down[k] = (L1L2WarpPiece){to_steps(y[k] + cells->offset[k] * rise) + HALF_PHASE_OF_STEPS,
+                                            (int32_t)to_steps(fits ? rise : 0.0), cells->from[k]};
         line->along[k] = (L1L2WarpPiece){to_steps(x[k] + cells->offset[k] * step) + HALF_PHASE_OF_STEPS,
                                          (int32_t)to_steps(fits ? step : 0.0), cells->from[k]};
     }
@@ -93,9 +94,11 @@ bool l1l2_warp_mesh_line(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *ce
     line->along_pieces = cells->count;
     line->count = cells->from[cells->count];
     set_columns(line, taps);
-    line->down[0].at += (int64_t)cells->skipped * line->down[0].step;
-    line->down_pieces = cells->count;
-    if (taps > 2)
+    if (taps > 2) {
         set_down(line, x, y, cells->count);
+    } else {
+        line->down[0].at += (int64_t)cells->skipped * line->down[0].step;
+        line->down_pieces = cells->count;
+    }
     return true;
 }

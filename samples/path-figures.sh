@@ -22,7 +22,7 @@ out=${2:-$top/out}
 
 "$top/.ci/prepare.sh" "$build"
 command -v gnuplot >/dev/null || die "gnuplot is missing: apt-get install gnuplot-nox"
-export GST_PLUGIN_PATH=$build/plugin GST_REGISTRY=$build/plugin/registry.bin
+export GST_PLUGIN_PATH=$build/plugin/gstreamer GST_REGISTRY=$build/plugin/gstreamer/registry.bin
 mkdir -p "$out"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -38,8 +38,8 @@ if [[ $# -gt 0 ]]; then
 fi
 
 "$top/.ci/prepare.sh" "$build"
-export GST_PLUGIN_PATH=$build/plugin${GST_PLUGIN_PATH:+:$GST_PLUGIN_PATH}
-export GST_REGISTRY=$build/plugin/registry.bin
+export GST_PLUGIN_PATH=$build/plugin/gstreamer${GST_PLUGIN_PATH:+:$GST_PLUGIN_PATH}
+export GST_REGISTRY=$build/plugin/gstreamer/registry.bin
 
 if [[ " ${options[*]} " == *" --help "* ]]; then
   exec "$build/samples/stabilize-file" --help

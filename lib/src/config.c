@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "log.h"
+#include "common/log.h"
 
 /* The overlap that 0 stands for. blend: the paper's. continuous: |DP| pulls the open end of a window flat for some 40
  * frames; with K = 100 of N = 150 that does not reach frames that are given out (docs/path.md has the table). */
@@ -108,7 +108,7 @@ L1L2StabResult l1l2_config_resolve(const L1L2StabConfig *in, L1L2StabConfig *out
     l1l2stab_config_init(out, sizeof *out);
     memcpy(out, in, in->struct_size < sizeof *out ? in->struct_size : sizeof *out);
     out->struct_size = sizeof *out;
-    if (!l1l2_format_info(out->format)) {
+    if (!l1l2_image_format_info(out->format)) {
         l1l2_log(&out->logger, L1L2STAB_LOG_ERROR, "format %d is not offered: choose an L1L2STAB_FORMAT_*",
                  (int)out->format);
         return L1L2STAB_ERR_UNSUPPORTED;

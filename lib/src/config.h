@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "format.h"
+#include "image/format.h"
 
 /* Copies *in (of whatever struct_size) over the defaults into *out, an overlap of 0 replaced by the join's default.
  * Checks every field; the reason of a refusal is logged to in's logger. */

@@ -9,7 +9,7 @@ void l1l2_info_export(const L1L2Mat *m, double diagonal_px, double px[9])
     memcpy(px, scaled.m, sizeof scaled.m);
 }
 
-void l1l2_info_describe(L1L2StabInfo *info, const L1L2Held *held, const L1L2PathFrame *f, double diagonal_px)
+void l1l2_info_describe(L1L2StabInfo *info, const L1L2QueuedFrame *held, const L1L2PathFrame *f, double diagonal_px)
 {
     *info = (L1L2StabInfo){
         .path_index = f->path_index,
@@ -30,7 +30,7 @@ void l1l2_info_describe(L1L2StabInfo *info, const L1L2Held *held, const L1L2Path
     l1l2_info_export(&f->S, diagonal_px, info->S);
     if (f->path_index == 0)
         info->flags |= L1L2STAB_INFO_PATH_START;
-    if (info->model == L1L2STAB_MODEL_IDENTITY || info->model == L1L2STAB_MODEL_PREDICTED)
+    if (info->model == L1L2STAB_MOTION_SOURCE_IDENTITY || info->model == L1L2STAB_MOTION_SOURCE_PREDICTED)
         info->flags |= L1L2STAB_INFO_MOTION_LOST;
     if (f->fallback)
         info->flags |= L1L2STAB_INFO_PATH_FALLBACK;

@@ -11,29 +11,29 @@
 #include <math.h>
 #include <string.h>
 
-#include "analysis.h"
-#include "clock.h"
+#include "common/clock.h"
+#include "common/fade.h"
+#include "common/log.h"
+#include "common/mem.h"
 #include "config.h"
-#include "fade.h"
-#include "frame.h"
+#include "frame_check.h"
+#include "frame_queue.h"
 #include "info.h"
-#include "log.h"
-#include "mem.h"
-#include "path.h"
-#include "ring.h"
-#include "warp.h"
-#include "wobble.h"
+#include "motion/worker.h"
+#include "path/path.h"
+#include "rolling_shutter/filter.h"
+#include "warp/warp.h"
 
 struct L1L2Stab {
     L1L2StabConfig cfg;
     const L1L2FormatInfo *format;
     int out_width, out_height;
     L1L2Pool *pool;
-    L1L2Analysis *analysis;
+    L1L2MotionWorker *analysis;
     L1L2Path *path;
-    L1L2Wobble *wobble;
+    L1L2ShutterFilter *wobble;
     L1L2Warp *warp;
-    L1L2Ring ring;
+    L1L2FrameQueue ring;
     bool finished;
     int hurried;              /* of the held frames, the oldest, which are ready whatever comes */
     bool decided;             /* `next` holds the path of the oldest held frame */
@@ -82,17 +82,17 @@ static L1L2StabResult build(L1L2Stab *s)
         .interpolation = cfg->interpolation,
         .pool = s->pool,
     };
-    const L1L2WobbleConfig wobble = {cfg->rolling_shutter, cfg->width, cfg->height,
+    const L1L2ShutterFilterConfig wobble = {cfg->rolling_shutter, cfg->width, cfg->height,
                                      s->out_width, s->out_height, cfg->window};
-    if (!s->pool || !l1l2_ring_init(&s->ring, cfg->window))
+    if (!s->pool || !l1l2_frame_queue_init(&s->ring, cfg->window))
         return L1L2STAB_ERR_NOMEM;
-    L1L2StabResult result = l1l2_analysis_create(&s->analysis, &motion, s->pool);
+    L1L2StabResult result = l1l2_motion_worker_create(&s->analysis, &motion, s->pool);
     if (result == L1L2STAB_OK)
         result = l1l2_path_create(&s->path, &path);
     if (result == L1L2STAB_OK)
         result = l1l2_warp_create(&s->warp, &warp);
     if (result == L1L2STAB_OK)
-        result = l1l2_wobble_create(&s->wobble, &wobble);
+        result = l1l2_shutter_filter_create(&s->wobble, &wobble);
     return result;
 }
 
@@ -109,7 +109,7 @@ L1L2StabResult l1l2stab_create(L1L2Stab **out, const L1L2StabConfig *cfg)
     if (!s)
         return L1L2STAB_ERR_NOMEM;
     s->cfg = resolved;
-    s->format = l1l2_format_info(resolved.format);
+    s->format = l1l2_image_format_info(resolved.format);
     s->pool = l1l2_pool_create(resolved.threads);
     s->lambda = resolved.lambda;
     s->crop_ratio = resolved.crop_ratio;
@@ -131,10 +131,10 @@ void l1l2stab_free(L1L2Stab **s)
 {
     if (!s || !*s)
         return;
-    l1l2_analysis_free((*s)->analysis); /* it may be reading a frame */
-    l1l2_ring_clear(&(*s)->ring);
+    l1l2_motion_worker_free((*s)->analysis); /* it may be reading a frame */
+    l1l2_frame_queue_clear(&(*s)->ring);
     l1l2_path_free((*s)->path);
-    l1l2_wobble_free((*s)->wobble);
+    l1l2_shutter_filter_free((*s)->wobble);
     l1l2_warp_free((*s)->warp);
     l1l2_pool_free((*s)->pool);
     l1l2_mem_free(*s);
@@ -145,10 +145,10 @@ void l1l2stab_reset(L1L2Stab *s)
 {
     if (!s)
         return;
-    l1l2_analysis_reset(s->analysis);
-    l1l2_ring_drop_all(&s->ring);
+    l1l2_motion_worker_reset(s->analysis);
+    l1l2_frame_queue_drop_all(&s->ring);
     l1l2_path_reset(s->path);
-    l1l2_wobble_reset(s->wobble);
+    l1l2_shutter_filter_reset(s->wobble);
     s->finished = s->decided = false;
     s->hurried = 0;
     s->pulled = 0;
@@ -157,20 +157,20 @@ void l1l2stab_reset(L1L2Stab *s)
 /* The frames between given motions are not tracked: a measured one after them starts from nothing. */
 static L1L2MotionResult given_motion(L1L2Stab *s, bool starts_path)
 {
-    l1l2_analysis_reset(s->analysis);
+    l1l2_motion_worker_reset(s->analysis);
     return (L1L2MotionResult){
         .F = l1l2_mat_identity(),
-        .model = starts_path ? L1L2STAB_MODEL_NONE : L1L2STAB_MODEL_GIVEN,
+        .model = starts_path ? L1L2STAB_MOTION_SOURCE_NONE : L1L2STAB_MOTION_SOURCE_GIVEN,
         .quality = starts_path ? 0.0 : 1.0,
     };
 }
 
 /* Steps 2b and 3 for the newest frame, whose motion is known. The path is made of the motion that info tells, to the
  * bit: whoever gives it back gets the same path. given_px: that motion, if it was given. */
-static void extend_path(L1L2Stab *s, L1L2Held *held, const double *given_px)
+static void extend_path(L1L2Stab *s, L1L2QueuedFrame *held, const double *given_px)
 {
     L1L2MotionResult *motion = &held->motion;
-    if (motion->model == L1L2STAB_MODEL_GIVEN)
+    if (motion->model == L1L2STAB_MOTION_SOURCE_GIVEN)
         memcpy(held->F_px, given_px, sizeof held->F_px);
     else
         l1l2_info_export(&motion->F, s->diagonal_px, held->F_px);
@@ -179,23 +179,23 @@ static void extend_path(L1L2Stab *s, L1L2Held *held, const double *given_px)
     const int64_t start_ns = l1l2_clock_ns();
     l1l2_path_set_lambda(s->path, held->lambda);
     l1l2_path_set_crop_ratio(s->path, held->crop_ratio);
-    l1l2_path_push(s->path, &motion->F, motion->model == L1L2STAB_MODEL_NONE);
-    l1l2_wobble_push(s->wobble, &motion->F, motion->has_residual ? &motion->residual : NULL,
-                     motion->model == L1L2STAB_MODEL_NONE);
-    l1l2_ring_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
+    l1l2_path_push(s->path, &motion->F, motion->model == L1L2STAB_MOTION_SOURCE_NONE);
+    l1l2_shutter_filter_push(s->wobble, &motion->F, motion->has_residual ? &motion->residual : NULL,
+                     motion->model == L1L2STAB_MOTION_SOURCE_NONE);
+    l1l2_frame_queue_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
 }
 
 /* Waits for the newest frame's motion, if it is being measured, and extends the path by it. An error is told once: the
  * frame then starts a path, and the next call goes on. */
 static L1L2StabResult settle(L1L2Stab *s)
 {
-    if (!l1l2_analysis_is_open(s->analysis))
+    if (!l1l2_motion_worker_is_open(s->analysis))
         return L1L2STAB_OK;
-    L1L2Held *held = l1l2_ring_at(&s->ring, s->ring.count - 1);
-    const L1L2StabResult result = l1l2_analysis_take(s->analysis, &held->motion);
+    L1L2QueuedFrame *held = l1l2_frame_queue_at(&s->ring, s->ring.count - 1);
+    const L1L2StabResult result = l1l2_motion_worker_take(s->analysis, &held->motion);
     if (result != L1L2STAB_OK) {
         l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR, "the motion of a frame: %s", l1l2stab_strerror(result));
-        held->motion = (L1L2MotionResult){.F = l1l2_mat_identity(), .model = L1L2STAB_MODEL_NONE};
+        held->motion = (L1L2MotionResult){.F = l1l2_mat_identity(), .model = L1L2STAB_MOTION_SOURCE_NONE};
     }
     extend_path(s, held, NULL);
     return result;
@@ -252,13 +252,13 @@ L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
     const L1L2StabResult result = settle(s);
     if (result != L1L2STAB_OK)
         return result;
-    L1L2Held *held = l1l2_ring_append(&s->ring);
-    *held = (L1L2Held){.frame = *in, .lambda = s->lambda, .crop_ratio = s->crop_ratio};
+    L1L2QueuedFrame *held = l1l2_frame_queue_append(&s->ring);
+    *held = (L1L2QueuedFrame){.frame = *in, .lambda = s->lambda, .crop_ratio = s->crop_ratio};
     if (in->motion) {
         held->motion = given_motion(s, starts_path);
         extend_path(s, held, in->motion);
     } else {
-        l1l2_analysis_begin(s->analysis, in->data[0], in->stride[0], starts_path);
+        l1l2_motion_worker_begin(s->analysis, in->data[0], in->stride[0], starts_path);
     }
     return L1L2STAB_OK;
 }
@@ -276,7 +276,7 @@ L1L2StabResult l1l2stab_hurry(L1L2Stab *s, int frames)
         return result;
     const int64_t start_ns = l1l2_clock_ns();
     l1l2_path_hurry(s->path, s->decided ? frames - 1 : frames);
-    l1l2_ring_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
+    l1l2_frame_queue_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
     s->hurried = frames;
     return L1L2STAB_OK;
 }
@@ -291,7 +291,7 @@ L1L2StabResult l1l2stab_finish(L1L2Stab *s)
     if (!s->finished && s->ring.count > 0) {
         const int64_t start_ns = l1l2_clock_ns();
         l1l2_path_finish(s->path);
-        l1l2_ring_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
+        l1l2_frame_queue_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
     }
     s->finished = true;
     return L1L2STAB_OK;
@@ -311,7 +311,7 @@ L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque)
     const L1L2StabResult ready = readiness(s);
     if (ready != L1L2STAB_OK)
         return ready;
-    const L1L2StabFrame *frame = &l1l2_ring_at(&s->ring, 0)->frame;
+    const L1L2StabFrame *frame = &l1l2_frame_queue_at(&s->ring, 0)->frame;
     if (pts)
         *pts = frame->pts;
     if (opaque)
@@ -340,7 +340,7 @@ static L1L2StabResult fetch_path(L1L2Stab *s)
             return result;
         s->decided = l1l2_path_pull(s->path, &s->next);
     }
-    l1l2_wobble_pull(s->wobble);
+    l1l2_shutter_filter_pull(s->wobble);
     s->camera = s->next.path_index == 0 ? l1l2_mat_identity() : l1l2_mat_mul(s->camera, s->next.F);
     s->smooth = l1l2_mat_mul(s->camera, s->next.B);
     return L1L2STAB_OK;
@@ -353,18 +353,19 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
     L1L2StabResult ready = readiness(s);
     if (ready != L1L2STAB_OK)
         return ready;
-    if (out && (!planes_given(s, out) || !planes_given(s, &l1l2_ring_at(&s->ring, 0)->frame)))
+    if (out && (!planes_given(s, out) || !planes_given(s, &l1l2_frame_queue_at(&s->ring, 0)->frame)))
         return L1L2STAB_ERR_ARGUMENT;
     ready = fetch_path(s);
     if (ready != L1L2STAB_OK)
         return ready;
-    const L1L2Held *held = l1l2_ring_at(&s->ring, 0);
+    const L1L2QueuedFrame *held = l1l2_frame_queue_at(&s->ring, 0);
     const L1L2Mat stable = warp_map(s, &s->next.B, s->next.crop_ratio), untouched = l1l2_mat_identity();
     const double bypass = l1l2_fade_next(&s->bypass, s->next.path_index == 0);
     const L1L2Mat map = l1l2_mat_mix(&stable, &untouched, bypass);
     const int64_t start_ns = l1l2_clock_ns();
     double residual_px;
-    const L1L2WarpMap bent = {.affine = map, .mesh = l1l2_wobble_bend(s->wobble, &map, 1.0 - bypass, &residual_px)};
+    const L1L2WarpMap bent = {.affine = map,
+                              .mesh = l1l2_shutter_filter_mesh(s->wobble, &map, 1.0 - bypass, &residual_px)};
     if (out) {
         l1l2_warp_render(s->warp, &bent, (const uint8_t *const *)held->frame.data, held->frame.stride, out->data,
                          out->stride);
@@ -379,13 +380,13 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
         memcpy(info->warp, map.m, sizeof map.m);
         info->bypass = bypass;
         info->residual = residual_px;
-        info->readout = l1l2_wobble_readout(s->wobble);
+        info->readout = l1l2_shutter_filter_readout(s->wobble);
         info->stage_ns[L1L2STAB_STAGE_WARP] = out ? l1l2_clock_ns() - start_ns : 0;
     }
     s->decided = false;
     s->hurried -= s->hurried > 0;
     s->pulled++;
-    l1l2_ring_drop_oldest(&s->ring);
+    l1l2_frame_queue_drop_oldest(&s->ring);
     return L1L2STAB_OK;
 }
 

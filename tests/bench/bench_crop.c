@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "path.h"
+#include "path/path.h"
 
 static const double ratios[] = {0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
 enum { RATIOS = 6 };

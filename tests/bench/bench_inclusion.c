@@ -10,9 +10,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "motion.h"
-#include "path.h"
-#include "wobble.h"
+#include "motion/motion.h"
+#include "path/path.h"
+#include "rolling_shutter/filter.h"
 
 enum { MODELS = 3, MAX_FRAMES = 10000, WINDOW = 150 };
 static const double ratios[] = {0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99};
@@ -44,7 +44,7 @@ static void analyse(Clip *clip, FILE *in)
     L1L2Motion *motion[MODELS];
     for (int model = 0; model < MODELS; model++) {
         const L1L2MotionConfig cfg = {
-            .format = l1l2_format_info(L1L2STAB_FORMAT_GRAY8), .width = clip->width, .height = clip->height,
+            .format = l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8), .width = clip->width, .height = clip->height,
             .analysis_size = 640, .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .seed = 1, .log = &log,
             .rolling_shutter = (L1L2StabRollingShutter)model,
         };
@@ -78,28 +78,29 @@ static void run(const Clip *clip, int model, double ratio, Count *count)
         .crop_ratio = ratio, .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
         .model = L1L2STAB_MOTION_MODEL_SIMILARITY,
     };
-    const L1L2WobbleConfig wobble_cfg = {(L1L2StabRollingShutter)model, clip->width, clip->height, clip->width,
+    const L1L2ShutterFilterConfig wobble_cfg = {(L1L2StabRollingShutter)model, clip->width, clip->height, clip->width,
                                          clip->height, WINDOW};
     L1L2Path *path;
-    L1L2Wobble *wobble;
+    L1L2ShutterFilter *wobble;
     L1L2WarpMesh plain;
-    if (l1l2_path_create(&path, &path_cfg) != L1L2STAB_OK || l1l2_wobble_create(&wobble, &wobble_cfg) != L1L2STAB_OK ||
+    if (l1l2_path_create(&path, &path_cfg) != L1L2STAB_OK ||
+        l1l2_shutter_filter_create(&wobble, &wobble_cfg) != L1L2STAB_OK ||
         !l1l2_warp_mesh_init(&plain, clip->width, clip->height))
         exit(EXIT_FAILURE);
     for (int t = 0; t <= clip->frames; t++) {
         const L1L2MotionResult *m = &clip->motion[model][t < clip->frames ? t : 0];
-        const bool starts_path = m->model == L1L2STAB_MODEL_NONE;
+        const bool starts_path = m->model == L1L2STAB_MOTION_SOURCE_NONE;
         if (t < clip->frames) {
             l1l2_path_push(path, &m->F, starts_path);
-            l1l2_wobble_push(wobble, &m->F, m->has_residual ? &m->residual : NULL, starts_path);
+            l1l2_shutter_filter_push(wobble, &m->F, m->has_residual ? &m->residual : NULL, starts_path);
         } else {
             l1l2_path_finish(path);
         }
         for (L1L2PathFrame f; l1l2_path_pull(path, &f); count->frames++) {
             const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f.B, diagonal_px), l1l2_mat_diagonal(ratio, ratio));
             double reach;
-            l1l2_wobble_pull(wobble);
-            const L1L2WarpMesh *bent = l1l2_wobble_bend(wobble, &map, 1.0, &reach);
+            l1l2_shutter_filter_pull(wobble);
+            const L1L2WarpMesh *bent = l1l2_shutter_filter_mesh(wobble, &map, 1.0, &reach);
             l1l2_warp_mesh_set(&plain, &map);
             check(bent ? bent : &plain, 0.5 * clip->width + (bent ? 0.0 : rounding_px),
                   0.5 * clip->height + (bent ? 0.0 : rounding_px), count);
@@ -108,7 +109,7 @@ static void run(const Clip *clip, int model, double ratio, Count *count)
         }
     }
     l1l2_path_free(path);
-    l1l2_wobble_free(wobble);
+    l1l2_shutter_filter_free(wobble);
     l1l2_warp_mesh_clear(&plain);
 }
 

@@ -16,7 +16,7 @@
 #include <opencv2/imgproc.hpp>
 
 extern "C" {
-#include "warp.h"
+#include "warp/warp.h"
 }
 
 namespace {
@@ -86,7 +86,7 @@ L1L2Warp *new_warp(L1L2StabInterpolation interpolation)
 {
     L1L2WarpConfig cfg = {};
     L1L2Warp *warp;
-    cfg.format = l1l2_format_info(L1L2STAB_FORMAT_I420);
+    cfg.format = l1l2_image_format_info(L1L2STAB_FORMAT_I420);
     cfg.in_width = cfg.out_width = kWidth;
     cfg.in_height = cfg.out_height = kHeight;
     cfg.interpolation = interpolation;

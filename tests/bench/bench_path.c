@@ -7,9 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "clock.h"
-#include "path_solver.h"
-#include "rng.h"
+#include "common/clock.h"
+#include "common/rng.h"
+#include "path/solver.h"
 
 enum { ROUNDS = 40 };
 
@@ -22,7 +22,7 @@ static double uniform(L1L2Rng *rng, double low, double high)
 static void describe(L1L2PathProblem *p, int count, uint64_t seed)
 {
     L1L2Rng rng = l1l2_rng_seeded(seed);
-    const L1L2Crop crop = l1l2_crop_make(640, 360, seed % 2 ? 0.8 : 0.9, p->dim);
+    const L1L2PathCrop crop = l1l2_path_crop_make(640, 360, seed % 2 ? 0.8 : 0.9, p->dim);
     const double shake = (double)(1 + seed % 5) * 0.003;
     p->count = count;
     p->history = 3;

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 #include "synth.h"
-#include "warp.h"
+#include "warp/warp.h"
 
 enum { FRAMES = 41, MARGIN = 8 };
 static const double PAN_PX = 0.05, CROP = 0.9;
@@ -63,7 +63,7 @@ static void bench(const Grey *src, L1L2StabInterpolation interpolation, bool zoo
     static const char *const names[] = {"bilinear", "bicubic", "lanczos"};
     const int width = zoomed ? src->width : (int)(CROP * src->width);
     const int height = zoomed ? src->height : (int)(CROP * src->height);
-    const L1L2WarpConfig cfg = {.format = l1l2_format_info(L1L2STAB_FORMAT_GRAY8), .in_width = src->width,
+    const L1L2WarpConfig cfg = {.format = l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8), .in_width = src->width,
                                 .in_height = src->height, .out_width = width, .out_height = height,
                                 .interpolation = interpolation};
     L1L2Warp *warp;

@@ -17,10 +17,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion.h"
-#include "path.h"
+#include "motion/motion.h"
+#include "path/path.h"
+#include "rolling_shutter/filter.h"
 #include "synth.h"
-#include "wobble.h"
 
 enum { WIDTH = 640, HEIGHT = 360, COLUMNS = 9, ROWS = 13, POINTS = COLUMNS * ROWS, WINDOW = 90 };
 static const double crop_ratio = 0.9;
@@ -135,13 +135,13 @@ static void draw(const SynthPicture *source, const L1L2WarpMesh *mesh)
 }
 
 /* The next frame's map as a mesh. */
-static void take(L1L2Wobble *wobble, const L1L2PathFrame *f, L1L2WarpMesh *mesh, Errors *errors)
+static void take(L1L2ShutterFilter *wobble, const L1L2PathFrame *f, L1L2WarpMesh *mesh, Errors *errors)
 {
     const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f->B, hypot(WIDTH, HEIGHT)),
                                      l1l2_mat_diagonal(crop_ratio, crop_ratio));
     double reach;
-    l1l2_wobble_pull(wobble);
-    const L1L2WarpMesh *bent = l1l2_wobble_bend(wobble, &map, 1.0, &reach);
+    l1l2_shutter_filter_pull(wobble);
+    const L1L2WarpMesh *bent = l1l2_shutter_filter_mesh(wobble, &map, 1.0, &reach);
     if (bent)
         memcpy(mesh->node, bent->node, (size_t)(bent->columns * bent->rows) * sizeof *bent->node);
     else
@@ -155,7 +155,7 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
     Synth *synth = synth_new(scene);
     SynthPicture picture = synth_picture_new(L1L2STAB_FORMAT_GRAY8, WIDTH, HEIGHT);
     const L1L2MotionConfig motion_cfg = {
-        .format = l1l2_format_info(L1L2STAB_FORMAT_GRAY8), .width = WIDTH, .height = HEIGHT, .analysis_size = 640,
+        .format = l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8), .width = WIDTH, .height = HEIGHT, .analysis_size = 640,
         .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .seed = 1, .log = &log, .rolling_shutter = model,
     };
     const L1L2PathConfig path_cfg = {
@@ -163,14 +163,14 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
         .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
         .model = L1L2STAB_MOTION_MODEL_SIMILARITY,
     };
-    const L1L2WobbleConfig wobble_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW};
+    const L1L2ShutterFilterConfig wobble_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW};
     L1L2Motion *motion = NULL;
     L1L2Path *path = NULL;
-    L1L2Wobble *wobble = NULL;
+    L1L2ShutterFilter *wobble = NULL;
     L1L2WarpMesh mesh[2];
     if (l1l2_motion_create(&motion, &motion_cfg) != L1L2STAB_OK || l1l2_path_create(&path, &path_cfg) != L1L2STAB_OK ||
-        l1l2_wobble_create(&wobble, &wobble_cfg) != L1L2STAB_OK || !l1l2_warp_mesh_init(&mesh[0], WIDTH, HEIGHT) ||
-        !l1l2_warp_mesh_init(&mesh[1], WIDTH, HEIGHT))
+        l1l2_shutter_filter_create(&wobble, &wobble_cfg) != L1L2STAB_OK ||
+        !l1l2_warp_mesh_init(&mesh[0], WIDTH, HEIGHT) || !l1l2_warp_mesh_init(&mesh[1], WIDTH, HEIGHT))
         exit(EXIT_FAILURE);
     Errors errors = {0};
     int out = 0;
@@ -181,7 +181,7 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
             if (l1l2_motion_push(motion, picture.data[0], picture.stride[0], t == 0, &m) != L1L2STAB_OK)
                 exit(EXIT_FAILURE);
             l1l2_path_push(path, &m.F, t == 0);
-            l1l2_wobble_push(wobble, &m.F, m.has_residual ? &m.residual : NULL, t == 0);
+            l1l2_shutter_filter_push(wobble, &m.F, m.has_residual ? &m.residual : NULL, t == 0);
         } else {
             l1l2_path_finish(path);
         }
@@ -194,10 +194,10 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
             }
         }
     }
-    errors.readout = l1l2_wobble_readout(wobble);
+    errors.readout = l1l2_shutter_filter_readout(wobble);
     l1l2_motion_free(motion);
     l1l2_path_free(path);
-    l1l2_wobble_free(wobble);
+    l1l2_shutter_filter_free(wobble);
     l1l2_warp_mesh_clear(&mesh[0]);
     l1l2_warp_mesh_clear(&mesh[1]);
     synth_picture_free(&picture);

@@ -12,7 +12,7 @@
 
 #include <l1l2stab/l1l2stab.h>
 
-#include "clock.h"
+#include "common/clock.h"
 #include "synth.h"
 
 enum { CLIP = 24 };

@@ -9,9 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "clock.h"
-#include "rng.h"
-#include "warp.h"
+#include "common/clock.h"
+#include "common/rng.h"
+#include "warp/warp.h"
 
 enum { FRAMES = 40 };
 
@@ -26,9 +26,9 @@ static Picture make_picture(const L1L2FormatInfo *format, int width, int height)
     Picture p = {{NULL}, {0}, {0}};
     L1L2Rng rng = l1l2_rng_seeded(1);
     for (int i = 0; i < format->planes; i++) {
-        const int bytes = l1l2_format_bytes(format) * format->plane[i].components;
-        p.stride[i] = (ptrdiff_t)l1l2_plane_size(width, format->plane[i].log2_sub_x) * bytes;
-        p.size[i] = (size_t)p.stride[i] * (size_t)l1l2_plane_size(height, format->plane[i].log2_sub_y);
+        const int bytes = l1l2_image_format_bytes(format) * format->plane[i].components;
+        p.stride[i] = (ptrdiff_t)l1l2_image_plane_size(width, format->plane[i].log2_sub_x) * bytes;
+        p.size[i] = (size_t)p.stride[i] * (size_t)l1l2_image_plane_size(height, format->plane[i].log2_sub_y);
         p.data[i] = malloc(p.size[i]);
         if (!p.data[i])
             exit(EXIT_FAILURE);
@@ -107,7 +107,7 @@ static void bench_kernel(const L1L2WarpConfig *cfg, const char *name, Way way, c
 static void bench(L1L2StabFormat id, int width, int height)
 {
     static const char *const kernels[] = {"bilinear", "bicubic", "lanczos"};
-    const L1L2FormatInfo *format = l1l2_format_info(id);
+    const L1L2FormatInfo *format = l1l2_image_format_info(id);
     Picture src = make_picture(format, width, height), dst = make_picture(format, width, height);
     L1L2Pool *pool = l1l2_pool_create(2);
     printf("%s %dx%d, ms a frame\n", format->name, width, height);

@@ -10,7 +10,7 @@ set -eu
 build=$1
 rounds=${3:-5}
 cores=${4:-0,1}
-export GST_PLUGIN_PATH="$build/plugin"
+export GST_PLUGIN_PATH="$build/plugin/gstreamer"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

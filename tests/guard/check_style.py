@@ -1,17 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What can be said of the text alone: check_style.py TREE | check_style.py --self-test
+"""Rules about the text of files: check_style.py TREE | check_style.py --self-test
 
-No tabs, trailing blanks, control characters or Windows line ends; a final newline; SPDX first; lines of at most 120
-columns, files of at most 400 lines, C functions of at most 60.
+No tabs, trailing blanks, control characters or Windows line ends; a final newline; SPDX first; source lines of at most
+120 columns.
 """
 import re
 import sys
 from pathlib import Path
 
 MAX_COLUMNS = 120
-MAX_FILE_LINES = 400
-MAX_FUNCTION_LINES = 60
 
 PLACES = ('.ci', 'docs', 'lib', 'plugin', 'samples', 'subprojects/packagefiles/osqp', 'tests')
 SOURCE = {'.c', '.cpp', '.h', '.py', '.sh'}
@@ -29,18 +27,6 @@ def line_faults(lines):
             yield number, 'trailing blanks'
 
 
-def function_faults(lines):
-    """A C function's body stands between a { and a } in the first column."""
-    start = None
-    for number, line in enumerate(lines, 1):
-        if line == '{':
-            start = number
-        elif line.startswith('}') and start is not None:
-            if number - start + 1 > MAX_FUNCTION_LINES:
-                yield start, f'a function of {number - start + 1} lines, {MAX_FUNCTION_LINES} at most'
-            start = None
-
-
 def faults(name, text):
     """(line, what) of each fault of a file."""
     suffix = Path(name).suffix
@@ -54,14 +40,10 @@ def faults(name, text):
     first = lines[1:2] if lines and lines[0].startswith('#!') else lines[0:1]
     if (source or lines and lines[0].startswith('#!')) and not (first and SPDX in first[0]):
         yield 1, f'no {SPDX}'
-    if source and len(lines) > MAX_FILE_LINES:
-        yield len(lines), f'{len(lines)} lines, {MAX_FILE_LINES} at most'
     if source:
         for number, line in enumerate(lines, 1):
             if len(line) > MAX_COLUMNS:
                 yield number, f'{len(line)} columns, {MAX_COLUMNS} at most'
-    if suffix in ('.c', '.cpp', '.h'):
-        yield from function_faults(lines)
 
 
 def check(tree):
@@ -81,11 +63,10 @@ def check(tree):
 def self_test():
     """Planted faults: each has to be found; the clean file has to pass."""
     head = f'/* {SPDX} */\n'
-    clean = head + 'int f(void)\n{\n' + '    f();\n' * (MAX_FUNCTION_LINES - 2) + '}\n'
+    clean = head + 'int f(void)\n{\n    f();\n}\n'
     planted = [
         head + '\tint a;\n', head + 'int a; \n', head + 'int a;\r\n', head + 'int a;', 'int a;\n', '',
-        head + 'int \u200ba;\n', head + f'int {"a" * MAX_COLUMNS};\n', head + 'int a;\n' * MAX_FILE_LINES,
-        clean.replace('}', '    f();\n}'),
+        head + 'int \u200ba;\n', head + f'int {"a" * MAX_COLUMNS};\n',
     ]
     missed = [text[:60] for text in planted if not list(faults('a.c', text))]
     false_alarms = list(faults('a.c', clean)) + list(faults('README.md', 'a ' * 70 + 'b\n'))

@@ -8,7 +8,7 @@
 #include <l1l2stab/l1l2stab.h>
 
 #include "checkx.h"
-#include "geom.h"
+#include "common/geom.h"
 #include "synth.h"
 
 enum { WIDTH = 160, HEIGHT = 96, MAX_FRAMES = 128 };

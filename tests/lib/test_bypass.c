@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The way from stabilized to untouched and back, in spite of the delay; and motions that are given back. */
-#include "fade.h"
-#include "format.h"
+#include "common/fade.h"
+#include "image/format.h"
 #include "stabilizer_fixture.h"
 
 enum { WINDOW = 8, FRAMES = 100 };
@@ -141,7 +141,7 @@ START_TEST(an_untouched_frame_is_the_source_byte_for_byte_in_every_format)
     static uint8_t source[4 * PLANE], picture[4 * PLANE];
     int formats = 0;
     for (int format = 1; format < 100; format++) {
-        const L1L2FormatInfo *info = l1l2_format_info((L1L2StabFormat)format);
+        const L1L2FormatInfo *info = l1l2_image_format_info((L1L2StabFormat)format);
         if (!info)
             continue;
         L1L2StabConfig cfg = small_config(4);
@@ -158,9 +158,9 @@ START_TEST(an_untouched_frame_is_the_source_byte_for_byte_in_every_format)
         l1l2stab_finish(s);
         ck_assert_int_eq(l1l2stab_pull(s, &out, NULL), L1L2STAB_OK);
         for (int p = 0; p < info->planes; p++) {
-            const size_t bytes = (size_t)l1l2_plane_size(cfg.width, info->plane[p].log2_sub_x) *
-                                 (size_t)(info->plane[p].components * l1l2_format_bytes(info));
-            for (int y = 0; y < l1l2_plane_size(H, info->plane[p].log2_sub_y); y++)
+            const size_t bytes = (size_t)l1l2_image_plane_size(cfg.width, info->plane[p].log2_sub_x) *
+                                 (size_t)(info->plane[p].components * l1l2_image_format_bytes(info));
+            for (int y = 0; y < l1l2_image_plane_size(H, info->plane[p].log2_sub_y); y++)
                 ck_assert_msg(memcmp(in.data[p] + y * STRIDE, out.data[p] + y * STRIDE, bytes) == 0,
                               "%s: plane %d, row %d", info->name, p, y);
         }
@@ -195,7 +195,7 @@ START_TEST(motions_that_are_given_back_make_the_same_path_to_the_bit)
     for (int t = 0; t < FRAMES; t++) {
         ck_assert_mem_eq(given[t].F, measured[t].F, sizeof given[t].F);
         ck_assert_mem_eq(given[t].warp, measured[t].warp, sizeof given[t].warp);
-        ck_assert_int_eq(given[t].model, t ? L1L2STAB_MODEL_GIVEN : L1L2STAB_MODEL_NONE);
+        ck_assert_int_eq(given[t].model, t ? L1L2STAB_MOTION_SOURCE_GIVEN : L1L2STAB_MOTION_SOURCE_NONE);
     }
     l1l2stab_free(&s);
     free_clip(clip);

@@ -9,7 +9,7 @@
 #include <l1l2stab/l1l2stab.h>
 
 #include "checkx.h"
-#include "mem.h"
+#include "common/mem.h"
 #include "synth.h"
 
 enum { FRAMES = 40 };

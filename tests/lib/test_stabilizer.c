@@ -166,7 +166,7 @@ START_TEST(the_infos_matrices_agree_with_each_other)
             ck_assert(fabs(p.x) <= 80 + 1e-9 && fabs(p.y) <= 48 + 1e-9);
         }
         ck_assert_int_eq(info[t].flags & L1L2STAB_INFO_PATH_START ? 1 : 0, t == 0);
-        ck_assert_int_eq(info[t].model, t == 0 ? L1L2STAB_MODEL_NONE : L1L2STAB_MODEL_SIMILARITY);
+        ck_assert_int_eq(info[t].model, t == 0 ? L1L2STAB_MOTION_SOURCE_NONE : L1L2STAB_MOTION_SOURCE_SIMILARITY);
         P_before = P;
     }
     l1l2stab_free(&s);
@@ -221,7 +221,7 @@ START_TEST(given_motions_take_the_place_of_measured_ones)
         for (; l1l2stab_pull(s, NULL, &given) == L1L2STAB_OK; pulled++) {
             const L1L2Mat a = mat_of(measured[pulled].B), b = mat_of(given.B);
             ck_assert_near(l1l2_mat_corner_distance(&a, &b, 80, 48), 0.0, 1e-6);
-            ck_assert_int_eq(given.model, pulled == 0 ? L1L2STAB_MODEL_NONE : L1L2STAB_MODEL_GIVEN);
+            ck_assert_int_eq(given.model, pulled == 0 ? L1L2STAB_MOTION_SOURCE_NONE : L1L2STAB_MOTION_SOURCE_GIVEN);
         }
     }
     ck_assert_int_eq(pulled, 40);

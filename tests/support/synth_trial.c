@@ -109,7 +109,7 @@ static void judge_motion(SynthTrial *trial, const SynthConfig *cfg, const Synth 
             multiply(truth, F, truth);
         }
         trial->bias[t] = synth_trial_distance(cfg, measured, truth);
-        if (info->model == L1L2STAB_MODEL_NONE) {
+        if (info->model == L1L2STAB_MOTION_SOURCE_NONE) {
             trial->starts += t > 0;
             continue;
         }

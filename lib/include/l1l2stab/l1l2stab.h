@@ -241,15 +241,15 @@ typedef struct L1L2StabFrame {
 } L1L2StabFrame;
 
 /* Which model of the inter-frame motion was used. */
-typedef enum L1L2StabModel {
-    L1L2STAB_MODEL_NONE = 0,        /* a path's first frame: there is no motion */
-    L1L2STAB_MODEL_IDENTITY = 1,    /* nothing could be measured: taken as still */
-    L1L2STAB_MODEL_PREDICTED = 2,   /* nothing could be measured: the motion before it, fading */
-    L1L2STAB_MODEL_TRANSLATION = 3, /* too few points for more */
-    L1L2STAB_MODEL_SIMILARITY = 4,
-    L1L2STAB_MODEL_GIVEN = 5,       /* L1L2StabFrame.motion */
-    L1L2STAB_MODEL_AFFINE = 6
-} L1L2StabModel;
+typedef enum L1L2StabMotionSource {
+    L1L2STAB_MOTION_SOURCE_NONE = 0,        /* a path's first frame: there is no motion */
+    L1L2STAB_MOTION_SOURCE_IDENTITY = 1,    /* nothing could be measured: taken as still */
+    L1L2STAB_MOTION_SOURCE_PREDICTED = 2,   /* nothing could be measured: the motion before it, fading */
+    L1L2STAB_MOTION_SOURCE_TRANSLATION = 3, /* too few points for more */
+    L1L2STAB_MOTION_SOURCE_SIMILARITY = 4,
+    L1L2STAB_MOTION_SOURCE_GIVEN = 5,       /* L1L2StabFrame.motion */
+    L1L2STAB_MOTION_SOURCE_AFFINE = 6
+} L1L2StabMotionSource;
 
 #define L1L2STAB_INFO_PATH_START (1u << 0)    /* first frame of a path */
 #define L1L2STAB_INFO_MOTION_LOST (1u << 1)   /* the motion into this frame was not measured */
@@ -281,7 +281,7 @@ typedef struct L1L2StabInfo {
     int tracks;          /* points that were tracked into this frame and passed the backward check */
     int inliers;         /* of these, consistent with F */
     int solver_iterations; /* of the window that this frame came from */
-    L1L2StabModel model;
+    L1L2StabMotionSource model;
     unsigned flags;      /* L1L2STAB_INFO_* */
     int64_t stage_ns[L1L2STAB_STAGE_COUNT]; /* time spent, by stage */
     /* Of the window that this frame came from: */

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* Time spent, for the figures by stage; nothing that is computed depends on it. A leaf. */
+#ifndef L1L2_COMMON_CLOCK_H
+#define L1L2_COMMON_CLOCK_H
+
+#include <stdint.h>
+#include <time.h>
+
+static inline int64_t l1l2_clock_ns(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
+#endif

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: MIT */
+/* Down the columns first, row by row as they lie in memory: the source is read once, at the speed of reading. */
+#include "image/area_scale.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "common/mem.h"
+#include "image/area_scale_row.h"
+
+enum { COLUMN_MAX = INT16_MAX, WEIGHT_MAX = INT16_MAX };
+
+/* `from` samples become `to`: each of these covers `total` parts of the source, each of those has `unit` parts. */
+typedef struct Axis {
+    int from, to, unit, total;
+} Axis;
+
+struct L1L2AreaScaler {
+    bool deep;          /* samples of 16 bits */
+    bool copy;          /* the source is the output */
+    bool narrow;        /* bytes, and their weighted sums fit a column's 15 bits */
+    bool pairs;         /* halved across, one component */
+    int components;     /* of a pixel */
+    Axis x, y;
+    int shift;          /* low bits of a column's sum that are rounded off */
+    int taps, count;    /* across; outputs, up to a whole block */
+    float half, scale;  /* from the sum across to the output */
+    int32_t *first;     /* of `count` */
+    int16_t *weight;    /* of count * taps, as scale_row.h wants them */
+    uint32_t *sum;      /* of a row of samples, down the columns */
+    int16_t *column;    /* what becomes of it; zeros behind it */
+    int32_t *across;    /* of `count` */
+};
+
+static Axis axis_new(int from, int to)
+{
+    int a = from, b = to;
+    while (b) {
+        const int rest = a % b;
+        a = b, b = rest;
+    }
+    return (Axis){.from = from, .to = to, .unit = to / a, .total = from / a};
+}
+
+/* The first source sample that output i covers. */
+static int first_covered(const Axis *axis, int i)
+{
+    return (int)((int64_t)i * axis->total / axis->unit);
+}
+
+/* How many parts of source sample j output i covers. */
+static int covered(const Axis *axis, int i, int j)
+{
+    const int64_t start = (int64_t)i * axis->total, low = (int64_t)j * axis->unit;
+    const int64_t end = start + axis->total, high = low + axis->unit;
+    const int64_t parts = (end < high ? end : high) - (start > low ? start : low);
+    return parts > 0 ? (int)parts : 0;
+}
+
+/* Weights across, of pixels and components, as far as the sums so far are from those of exact ones rounded: so each
+ * output's weights have the same sum, which is returned. */
+static int weigh(L1L2AreaScaler *s, const double *grey)
+{
+    const int whole = s->components == 1 ? s->x.total : WEIGHT_MAX, block = L1L2_SCALE_BLOCK;
+    for (int x = 0; x < s->x.to; x++) {
+        const int first = first_covered(&s->x, x);
+        double exact = 0.0;
+        int so_far = 0;
+        s->first[x] = first * s->components;
+        for (int k = 0; k < s->taps; k++) {
+            const double part = s->components == 1 ? 1.0 : grey[k % s->components];
+            exact += part * covered(&s->x, x, first + k / s->components) * whole / s->x.total;
+            const int weight = (int)lround(exact) - so_far;
+            so_far += weight;
+            s->weight[(x / block * s->taps + k / block * block + x % block) * block + k % block] = (int16_t)weight;
+        }
+    }
+    return whole;
+}
+
+/* depth: bits of a sample, its unused low ones included. */
+static void set_precision(L1L2AreaScaler *s, const L1L2FormatInfo *format)
+{
+    const int depth = format->depth + format->shift;
+    const uint32_t highest = ((1u << format->depth) - 1) << format->shift, most = highest * (uint32_t)s->y.total;
+    while ((most + (1u << s->shift >> 1)) >> s->shift > COLUMN_MAX)
+        s->shift++;
+    s->narrow = !s->deep && s->shift == 0;
+    const double unit = ldexp((double)weigh(s, format->grey) * s->y.total, depth - 8 - s->shift);
+    s->scale = (float)(1.0 / unit);
+    s->half = (float)(0.5 * unit + 0.25); /* a half of the sum's own unit keeps halves up */
+}
+
+L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, int height, int out_width, int out_height)
+{
+    L1L2AreaScaler *s = l1l2_mem_new(1, sizeof *s);
+    if (!s)
+        return NULL;
+    const int block = L1L2_SCALE_BLOCK;
+    s->deep = format->depth > 8;
+    s->components = l1l2_image_format_pixel_components(format);
+    s->x = axis_new(width, out_width);
+    s->y = axis_new(height, out_height);
+    s->copy = !s->deep && s->components == 1 && s->x.total == 1 && s->y.total == 1;
+    s->pairs = s->components == 1 && s->x.total == 2 && s->x.unit == 1;
+    /* The first sample may be covered by one part alone. */
+    const int pixels = (s->x.total + s->x.unit - 1) / s->x.unit + (s->x.unit > 1);
+    s->taps = (pixels * s->components + block - 1) / block * block;
+    s->count = (out_width + block - 1) / block * block;
+    const size_t samples = (size_t)width * (size_t)s->components;
+    s->first = l1l2_mem_new((size_t)s->count, sizeof *s->first);
+    s->weight = l1l2_mem_new((size_t)s->count * (size_t)s->taps, sizeof *s->weight);
+    s->sum = l1l2_mem_new(samples, sizeof *s->sum);
+    s->column = l1l2_mem_new(samples + (size_t)s->taps, sizeof *s->column);
+    s->across = l1l2_mem_new((size_t)s->count, sizeof *s->across);
+    if (!s->first || !s->weight || !s->sum || !s->column || !s->across) {
+        l1l2_image_scale_free(s);
+        return NULL;
+    }
+    set_precision(s, format);
+    return s;
+}
+
+void l1l2_image_scale_free(L1L2AreaScaler *s)
+{
+    if (!s)
+        return;
+    l1l2_mem_free(s->first);
+    l1l2_mem_free(s->weight);
+    l1l2_mem_free(s->sum);
+    l1l2_mem_free(s->column);
+    l1l2_mem_free(s->across);
+    l1l2_mem_free(s);
+}
+
+/* sum = weight * row, or added to it. */
+#define DEFINE_ADD(name, Sample, Sum)                                                                                 \
+    static void name(const Sample *row, uint16_t weight, int count, bool first, Sum *restrict sum)                    \
+    {                                                                                                                 \
+        if (first)                                                                                                    \
+            for (int i = 0; i < count; i++)                                                                           \
+                sum[i] = (Sum)((uint32_t)weight * row[i]);                                                            \
+        else                                                                                                          \
+            for (int i = 0; i < count; i++)                                                                           \
+                sum[i] = (Sum)(sum[i] + (uint32_t)weight * row[i]);                                                   \
+    }
+DEFINE_ADD(add_narrow, uint8_t, int16_t)
+DEFINE_ADD(add_bytes, uint8_t, uint32_t)
+DEFINE_ADD(add_words, uint16_t, uint32_t)
+
+/* Samples with bits set above their depth saturate. */
+static void round_columns(const uint32_t *sum, int count, int shift, int16_t *restrict column)
+{
+    const uint32_t half = 1u << shift >> 1;
+    for (int i = 0; i < count; i++) {
+        const uint32_t rounded = (sum[i] + half) >> shift;
+        column[i] = (int16_t)(rounded < COLUMN_MAX ? rounded : COLUMN_MAX);
+    }
+}
+
+static void add_pairs(const int16_t *column, int count, int32_t *restrict across)
+{
+    for (int x = 0; x < count; x++)
+        across[x] = column[2 * x] + column[2 * x + 1];
+}
+
+static void round_outputs(const int32_t *across, int count, float half, float scale, uint8_t *restrict out)
+{
+    for (int x = 0; x < count; x++) {
+        const int32_t level = (int32_t)(((float)across[x] + half) * scale);
+        out[x] = (uint8_t)(level < UINT8_MAX ? level : UINT8_MAX);
+    }
+}
+
+void l1l2_image_scale_run(L1L2AreaScaler *s, const uint8_t *data, ptrdiff_t stride, uint8_t *out, ptrdiff_t out_stride)
+{
+    const int samples = s->x.from * s->components;
+    for (int y = 0; y < s->y.to; y++, out += out_stride) {
+        const int first = first_covered(&s->y, y);
+        if (s->copy) {
+            memcpy(out, data + stride * y, (size_t)samples);
+            continue;
+        }
+        for (int j = first; j < s->y.from && covered(&s->y, y, j) > 0; j++) {
+            const uint8_t *row = data + stride * j;
+            const uint16_t weight = (uint16_t)covered(&s->y, y, j);
+            if (s->narrow)
+                add_narrow(row, weight, samples, j == first, s->column);
+            else if (s->deep)
+                add_words((const void *)row, weight, samples, j == first, s->sum);
+            else
+                add_bytes(row, weight, samples, j == first, s->sum);
+        }
+        if (!s->narrow)
+            round_columns(s->sum, samples, s->shift, s->column);
+        if (s->pairs)
+            add_pairs(s->column, s->x.to, s->across);
+        else
+            l1l2_image_scale_row(s->column, s->first, s->weight, s->taps, s->count, s->across);
+        round_outputs(s->across, s->x.to, s->half, s->scale, out);
+    }
+}

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+/* What a pixel format looks like in memory: planes, subsampling, components. A leaf. */
+#ifndef L1L2_IMAGE_FORMAT_H
+#define L1L2_IMAGE_FORMAT_H
+
+#include <l1l2stab/l1l2stab.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { L1L2_MAX_PLANES = 4 };
+
+typedef struct L1L2FormatInfo {
+    L1L2StabFormat format;
+    const char *name;       /* GStreamer's */
+    int depth;              /* bits of a component: 8 in a byte; 9..16 in two bytes, the low one first */
+    int shift;              /* unused low bits, zero: 16 - depth where the component is at the top of its two bytes */
+    double grey[4];         /* the grey picture that is tracked: weights of the components of a pixel, sum 1 */
+    int planes;             /* 1..4 */
+    struct {
+        int components;     /* interleaved: 1..4. Packed 4:2:2: two pixels' luma and their chroma, halved across */
+        int log2_sub_x;     /* horizontal subsampling: 0..2 */
+        int log2_sub_y;     /* vertical: 0, 1 */
+    } plane[L1L2_MAX_PLANES];
+} L1L2FormatInfo;
+
+/* NULL for a format that is not offered. */
+const L1L2FormatInfo *l1l2_image_format_info(L1L2StabFormat format);
+
+/* Bytes of a component. */
+static inline int l1l2_image_format_bytes(const L1L2FormatInfo *format)
+{
+    return format->depth > 8 ? 2 : 1;
+}
+
+/* Components of a pixel in the first plane: packed 4:2:2 has luma and one of the chroma components. */
+static inline int l1l2_image_format_pixel_components(const L1L2FormatInfo *format)
+{
+    return format->plane[0].components >> format->plane[0].log2_sub_x;
+}
+
+/* Samples of a plane in a frame of `size` pixels: rounded up. */
+static inline int l1l2_image_plane_size(int size, int log2_sub)
+{
+    return (size + (1 << log2_sub) - 1) >> log2_sub;
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

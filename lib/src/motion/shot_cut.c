@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT */
+#include "motion/shot_cut.h"
+
+void l1l2_motion_cut_start(L1L2ShotCut *shot, const L1L2Thumbnail *thumbnail)
+{
+    shot->shown[0] = *thumbnail;
+    shot->count = 1;
+    shot->frames = 0;
+    shot->unsure = false;
+}
+
+static void remember(L1L2ShotCut *shot, const L1L2Thumbnail *thumbnail)
+{
+    if (++shot->frames >= L1L2_CUT_STEP) {
+        shot->frames = 0;
+        for (int i = L1L2_CUT_MEMORY - 1; i > 0; i--)
+            shot->shown[i] = shot->shown[i - 1];
+        shot->count += shot->count < L1L2_CUT_MEMORY;
+    }
+    shot->shown[0] = *thumbnail;
+}
+
+bool l1l2_motion_cut_push(L1L2ShotCut *shot, const L1L2Thumbnail *thumbnail, bool measured)
+{
+    const bool shows = l1l2_image_thumbnail_has_detail(thumbnail);
+    shot->unsure = shot->unsure || !measured;
+    if (shot->unsure && shows) {
+        int unlike = 0;
+        while (unlike < shot->count && l1l2_image_thumbnails_differ(&shot->shown[unlike], thumbnail))
+            unlike++;
+        if (unlike == shot->count)
+            return true;
+    }
+    if (measured && shows) {
+        shot->unsure = false;
+        remember(shot, thumbnail);
+    }
+    return false;
+}

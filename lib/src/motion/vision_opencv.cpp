@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The other side of vision.h: OpenCV. The only C++ file, and the only one that knows OpenCV.
+ *
+ * No exception leaves it, and none of OpenCV's globals (threads, random numbers) is touched. All of it runs on
+ * the caller's thread.
+ */
+#include "motion/vision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp> /* the pyramid */
+
+#include "common/log.h"
+#include "image/area_scale.h"
+#include "motion/lucas_kanade.h"
+
+namespace {
+
+/* Halvings above the picture itself: at 640 px, points are followed over 80 px a frame; one less loses half of them at
+ * 40 px, and each costs next to nothing. */
+constexpr int kLevels = 4;
+/* The way back starts where the point came from: a point that was followed rightly is there at once, one that was not
+ * is drawn to where it matches. A fifth faster than all the way from the top, and in fast pans half as many points more
+ * pass. */
+constexpr int kBackLevels = 1;
+/* Corners weaker than this part of the strongest are left out. At 0.01, a dark thing on snow leaves no point but its
+ * own. */
+constexpr double kCornerQuality = 0.003;
+/* Cells in which no corner was chosen get a turn of their own, by their own strongest: else a burnt-in clock would
+ * leave a dark scene none. */
+constexpr int kCellsX = 4, kCellsY = 3;
+/* The brightness of two pictures: a smaller change of contrast or mean (grey levels) is left to the tracking; a
+ * contrast below the third tells nothing; and what a match has to bring, as part of the difference. */
+constexpr double kSameContrast = 0.08, kSameMean = 6.0, kFlatPicture = 2.0, kNearer = 0.7;
+/* Letterbox bars: no brighter than this, and flat but for what compression leaves. Grey levels. */
+constexpr int kBlack = 40, kFlat = 10;
+/* A long strip keeps this many pixels of its short side, as far as it has them: a window has to find its place. */
+constexpr int kMinSide = 32;
+
+const cv::Size border(L1L2_LK_BORDER_X, L1L2_LK_BORDER_Y);
+
+using Scaler = std::unique_ptr<L1L2AreaScaler, decltype(&l1l2_image_scale_free)>;
+
+} // namespace
+
+struct L1L2Vision {
+    L1L2VisionConfig cfg;
+    cv::Size size;
+    Scaler to_grey{nullptr, l1l2_image_scale_free}, to_thumbnail{nullptr, l1l2_image_scale_free};
+    cv::Mat grey, previous_grey;
+    std::vector<cv::Mat> pyramid, previous_pyramid;
+    int pictures = 0;                        /* taken since reset, at most 2 matter */
+    cv::Rect active;                         /* the picture without its bars, of the downscaled size */
+    cv::Mat mask;
+    cv::Mat matched;                         /* the previous picture in the current one's brightness */
+    std::vector<cv::Point2f> from;
+};
+
+namespace {
+
+template <class Body>
+L1L2StabResult guard(const L1L2StabLogger *log, Body &&body) noexcept
+{
+    try {
+        /* What is nested in a parallel region OpenCV does on this thread alone: the cores have the warp to do. */
+        cv::parallel_for_(cv::Range(0, 1), [&](const cv::Range &) { body(); });
+        return L1L2STAB_OK;
+    } catch (const std::bad_alloc &) {
+        return L1L2STAB_ERR_NOMEM;
+    } catch (const cv::Exception &e) {
+        if (e.code == cv::Error::StsNoMem)
+            return L1L2STAB_ERR_NOMEM;
+        l1l2_log(log, L1L2STAB_LOG_ERROR, "OpenCV: %s", e.what());
+    } catch (const std::exception &e) {
+        l1l2_log(log, L1L2STAB_LOG_ERROR, "OpenCV: %s", e.what());
+    } catch (...) {
+        l1l2_log(log, L1L2STAB_LOG_ERROR, "OpenCV: unknown exception");
+    }
+    return L1L2STAB_ERR_BACKEND;
+}
+
+int scaled_side(const L1L2VisionConfig &cfg, int side)
+{
+    const double scale = std::min(1.0, double(cfg.analysis_size) / std::max(cfg.width, cfg.height));
+    return std::max(cvRound(side * scale), std::min(side, kMinSide));
+}
+
+Scaler scaler(const L1L2FormatInfo *format, cv::Size from, cv::Size to)
+{
+    Scaler made(l1l2_image_scale_new(format, from.width, from.height, to.width, to.height), l1l2_image_scale_free);
+    if (!made)
+        throw std::bad_alloc();
+    return made;
+}
+
+bool inside(const L1L2Vision *v, cv::Point2f p)
+{
+    return p.x >= v->active.x && p.y >= v->active.y && p.x <= v->active.x + v->active.width - 1 &&
+           p.y <= v->active.y + v->active.height - 1;
+}
+
+/* Lucas-Kanade takes a point's brightness to stay. Where a flash, a lamp or the camera's own exposure changed that of
+ * the whole picture, the previous one is given the current one's mean and contrast; if that does not bring them nearer
+ * to each other, it was something else. */
+void match_brightness(L1L2Vision *v)
+{
+    const size_t level = std::min<size_t>(4, (v->pyramid.size() - 1) / 2 * 2); /* every second entry is a picture */
+    const cv::Mat &before = v->previous_pyramid[level], &now = v->pyramid[level];
+    cv::Scalar mean[2], deviation[2];
+    cv::meanStdDev(before, mean[0], deviation[0]);
+    cv::meanStdDev(now, mean[1], deviation[1]);
+    if (deviation[0][0] < kFlatPicture || deviation[1][0] < kFlatPicture)
+        return;
+    const double gain = deviation[1][0] / deviation[0][0], offset = mean[1][0] - gain * mean[0][0];
+    if (std::abs(std::log(gain)) < kSameContrast && std::abs(mean[1][0] - mean[0][0]) < kSameMean)
+        return;
+    cv::Mat matched;
+    before.convertTo(matched, CV_8U, gain, offset);
+    if (cv::norm(now, matched, cv::NORM_L1) > kNearer * cv::norm(now, before, cv::NORM_L1))
+        return;
+    v->previous_grey.convertTo(v->matched, CV_8U, gain, offset);
+    cv::buildOpticalFlowPyramid(v->matched, v->previous_pyramid, border, kLevels);
+}
+
+/* How many lines of `low` and `high`, from one end on, differ by next to nothing: a bar. Not more than 45 %. */
+int bar_lines(const cv::Mat &low, const cv::Mat &high, bool from_end)
+{
+    const int lines = int(low.total()), most = lines * 45 / 100;
+    int bar = 0;
+    while (bar < most) {
+        const int i = from_end ? lines - 1 - bar : bar;
+        if (high.data[i] > kBlack || high.data[i] - low.data[i] > kFlat)
+            break;
+        bar++;
+    }
+    return bar;
+}
+
+/* The picture within letterbox or pillarbox bars. A corner where the scene goes behind a bar moves with neither, so a
+ * window's radius is left out there; where there is no bar, nothing is. */
+cv::Rect active_area(const cv::Mat &picture)
+{
+    int bar[4]; /* top, bottom, left, right */
+    for (int side = 0; side < 2; side++) {
+        cv::Mat low, high;
+        cv::reduce(picture, low, side == 0 ? 1 : 0, cv::REDUCE_MIN);
+        cv::reduce(picture, high, side == 0 ? 1 : 0, cv::REDUCE_MAX);
+        for (int end = 0; end < 2; end++) {
+            bar[2 * side + end] = bar_lines(low, high, end == 1);
+            if (bar[2 * side + end] > 0)
+                bar[2 * side + end] += L1L2_LK_WINDOW / 2 + 1;
+        }
+    }
+    const cv::Rect inner(bar[2], bar[0], picture.cols - bar[2] - bar[3], picture.rows - bar[0] - bar[1]);
+    return inner.width > 0 && inner.height > 0 ? inner : cv::Rect(cv::Point(), picture.size());
+}
+
+void block(cv::Mat &area, const L1L2Mask *mask)
+{
+    for (int cell = 0; mask && cell < L1L2_MASK_CELLS; cell++) {
+        const int x = cell % L1L2_MASK_W, y = cell / L1L2_MASK_W;
+        const int left = area.cols * x / L1L2_MASK_W, right = area.cols * (x + 1) / L1L2_MASK_W;
+        const int top = area.rows * y / L1L2_MASK_H, bottom = area.rows * (y + 1) / L1L2_MASK_H;
+        if (mask->blocked[cell])
+            area(cv::Rect(left, top, right - left, bottom - top)).setTo(0);
+    }
+}
+
+/* An area of a picture that is `factor` times smaller; what reaches that picture's far edge reaches this one's. */
+cv::Rect scaled(cv::Rect area, int factor, cv::Size small, cv::Size size)
+{
+    const int right = area.br().x == small.width ? size.width : area.br().x * factor;
+    const int bottom = area.br().y == small.height ? size.height : area.br().y * factor;
+    return {area.x * factor, area.y * factor, right - area.x * factor, bottom - area.y * factor};
+}
+
+/* What follows points through a pyramid, every second entry of which has a level's slopes. Returns how many levels. */
+int levels(const std::vector<cv::Mat> &pyramid, L1L2LkLevel *level)
+{
+    const int count = int(pyramid.size()) / 2;
+    for (int i = 0; i < count; i++) {
+        const cv::Mat &grey = pyramid[size_t(2 * i)], &slope = pyramid[size_t(2 * i + 1)];
+        level[i] = {grey.ptr<uchar>(), slope.ptr<int16_t>(), ptrdiff_t(grey.step), ptrdiff_t(slope.step1()),
+                    grey.cols, grey.rows};
+    }
+    return count;
+}
+
+/* Cell by cell from left to right, row by row. */
+cv::Rect cell_area(cv::Size size, int cell)
+{
+    const int x = cell % kCellsX, y = cell / kCellsX;
+    const int left = size.width * x / kCellsX, top = size.height * y / kCellsY;
+    return {left, top, size.width * (x + 1) / kCellsX - left, size.height * (y + 1) / kCellsY - top};
+}
+
+int cell_of(const L1L2Vision *v, L1L2Pixel p)
+{
+    const int x = int(p.x) * kCellsX / v->size.width, y = int(p.y) * kCellsY / v->size.height;
+    return std::clamp(y, 0, kCellsY - 1) * kCellsX + std::clamp(x, 0, kCellsX - 1);
+}
+
+/* Up to `quota` corners of an area, in pixels of the downscaled picture; those found are masked for the areas to come.
+ * Returns how many. */
+int corners_in(L1L2Vision *v, const cv::Mat &picture, cv::Rect area, int quota, double distance, float scale,
+               L1L2Pixel *corners)
+{
+    cv::goodFeaturesToTrack(picture(area), v->from, quota, kCornerQuality, distance, v->mask(area));
+    const int found = std::min(quota, int(v->from.size()));
+    for (int i = 0; i < found; i++) {
+        const cv::Point2f p = v->from[size_t(i)] + cv::Point2f(area.tl());
+        cv::circle(v->mask, p, cvCeil(distance), cv::Scalar(0), cv::FILLED);
+        corners[i] = {p.x * scale, p.y * scale};
+    }
+    return found;
+}
+
+} // namespace
+
+extern "C" {
+
+L1L2StabResult l1l2_vision_create(L1L2Vision **out, const L1L2VisionConfig *cfg)
+{
+    *out = nullptr;
+    return guard(cfg->log, [&] {
+        std::unique_ptr<L1L2Vision> v(new L1L2Vision);
+        v->cfg = *cfg;
+        v->size = cv::Size(scaled_side(*cfg, cfg->width), scaled_side(*cfg, cfg->height));
+        v->active = cv::Rect(cv::Point(), v->size);
+        v->to_grey = scaler(cfg->format, cv::Size(cfg->width, cfg->height), v->size);
+        v->to_thumbnail = scaler(l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8), v->size,
+                                 cv::Size(L1L2_THUMBNAIL_W, L1L2_THUMBNAIL_H));
+        *out = v.release();
+    });
+}
+
+void l1l2_vision_free(L1L2Vision *v)
+{
+    delete v;
+}
+
+void l1l2_vision_reset(L1L2Vision *v)
+{
+    v->pictures = 0;
+    v->active = cv::Rect(cv::Point(), v->size);
+}
+
+void l1l2_vision_size(const L1L2Vision *v, int *width, int *height)
+{
+    *width = v->size.width;
+    *height = v->size.height;
+}
+
+L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t stride)
+{
+    return guard(v->cfg.log, [&] {
+        cv::swap(v->grey, v->previous_grey);
+        std::swap(v->pyramid, v->previous_pyramid);
+        v->grey.create(v->size, CV_8U);
+        l1l2_image_scale_run(v->to_grey.get(), data, stride, v->grey.data, ptrdiff_t(v->grey.step));
+        cv::buildOpticalFlowPyramid(v->grey, v->pyramid, border, kLevels);
+        v->pictures = std::min(v->pictures + 1, 2);
+        if (v->pictures == 2)
+            match_brightness(v);
+    });
+}
+
+L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail)
+{
+    return guard(v->cfg.log, [&] {
+        l1l2_image_scale_run(v->to_thumbnail.get(), v->grey.data, ptrdiff_t(v->grey.step), thumbnail->level,
+                       L1L2_THUMBNAIL_W);
+    });
+}
+
+L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int count, const L1L2Mask *mask,
+                                   double min_distance, L1L2Pixel *corners, int capacity, int *found)
+{
+    *found = 0;
+    if (v->pictures < 2 || capacity <= 0) /* OpenCV takes a capacity of 0 for none at all */
+        return L1L2STAB_OK;
+    return guard(v->cfg.log, [&] {
+        /* Corners of the half-size level (every second entry is a level's derivatives): as good to follow, for a
+         * quarter of the time. */
+        const bool half = v->previous_pyramid.size() > 2;
+        const cv::Mat &picture = half ? v->previous_pyramid[2] : v->previous_grey;
+        const float scale = half ? 2.0f : 1.0f;
+        const double distance = min_distance / double(scale);
+        const cv::Rect active = active_area(picture);
+        v->active = scaled(active, half ? 2 : 1, picture.size(), v->size);
+        v->mask.create(picture.size(), CV_8U);
+        v->mask.setTo(0);
+        v->mask(active).setTo(255);
+        block(v->mask, mask);
+        for (int i = 0; i < count; i++) /* one pixel more, since centre and rim are rounded */
+            cv::circle(v->mask, cv::Point(cvRound(taken[i].x / scale), cvRound(taken[i].y / scale)),
+                       cvCeil(distance) + 1, cv::Scalar(0), cv::FILLED);
+        bool empty[kCellsX * kCellsY];
+        std::fill(empty, empty + kCellsX * kCellsY, true);
+        *found = corners_in(v, picture, cv::Rect(cv::Point(), picture.size()), capacity, distance, scale, corners);
+        for (int i = 0; i < count + *found; i++)
+            empty[cell_of(v, i < count ? taken[i] : corners[i - count])] = false;
+        for (int cell = 0; cell < kCellsX * kCellsY; cell++) {
+            const int quota = std::min(capacity / (kCellsX * kCellsY), capacity - *found);
+            const cv::Rect area = cell_area(picture.size(), cell);
+            if (empty[cell] && quota > 0 && !area.empty())
+                *found += corners_in(v, picture, area, quota, distance, scale, corners + *found);
+        }
+    });
+}
+
+L1L2StabResult l1l2_vision_track(L1L2Vision *v, const L1L2Pixel *from, L1L2Pixel *to, bool *ok, int count,
+                                 double max_return)
+{
+    std::fill(ok, ok + count, false);
+    if (v->pictures < 2 || count <= 0)
+        return L1L2STAB_OK;
+    return guard(v->cfg.log, [&] {
+        L1L2LkLevel before[kLevels + 1], now[kLevels + 1];
+        const int all = std::min(levels(v->previous_pyramid, before), levels(v->pyramid, now));
+        for (int i = 0; i < count; i++) {
+            const L1L2LkPoint start = {from[i].x, from[i].y};
+            L1L2LkPoint there = start, back = start;
+            const bool found = l1l2_lk_follow(before, now, all, start, &there) &&
+                               l1l2_lk_follow(now, before, std::min(all, kBackLevels + 1), there, &back);
+            to[i] = {there.x, there.y};
+            ok[i] = found && inside(v, {there.x, there.y}) &&
+                    std::hypot(double(back.x - start.x), double(back.y - start.y)) <= max_return;
+        }
+    });
+}
+
+} // extern "C"

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Algorithm 1, steps 2 and 3, over a stream of any length: inter-frame motions in, update transforms out.
+ *
+ * Numbers only, no pixels. Unit: the frame's diagonal. All maps are of one motion model: with translations the picture
+ * is moved, never turned or zoomed. A path is the frames from one cut to the next; windows, joins and ends are those of
+ * plan.h. C_t is taken relative to each window's first frame, so numbers stay near 1 however long the video is.
+ *
+ * Joins (paper, section 4.1)
+ *   continuous  the differences of a window reach back over the last three frames given out before it, as constants.
+ *   blend       eq. (8) on the K shared frames. As printed, v_i = i/K weighs the OLD window: it would jump at both
+ *               ends. The weights run the other way here: old 1 - i/(K+1), new i/(K+1), i = 1..K.
+ * Around an early window (plan.h) every join is a continuous one.
+ */
+#ifndef L1L2_PATH_PATH_H
+#define L1L2_PATH_PATH_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <l1l2stab/l1l2stab.h>
+
+#include "common/geom.h"
+#include "path/solver.h"
+
+typedef struct L1L2Path L1L2Path;
+
+typedef struct L1L2PathConfig {
+    int width, height;  /* pixels: only their ratio matters */
+    double lambda;      /* of eq. (4) at 30 frames/s */
+    double frame_rate;  /* frames a second; 0: 30 */
+    double crop_ratio;
+    double weights[3];  /* of eq. (3); 1, 1, 1 in eq. (5) */
+    int window, overlap; /* N, K */
+    L1L2StabJoin join;
+    L1L2StabMotionModel model; /* of F, and with it of B and of the paths */
+    L1L2StabSolver solver;
+    const L1L2StabLogger *log;
+} L1L2PathConfig;
+
+typedef struct L1L2PathFrame {
+    L1L2Mat F, B;        /* measured motion, update transform */
+    L1L2Mat S;           /* smooth step P_{t-1}^-1 P_t; identity at a path's first frame */
+    uint64_t path_index; /* frames since the path's start */
+    double lambda, crop_ratio; /* as they were when the frame was pushed */
+    bool early;          /* decided by an early window, with a shorter look-ahead */
+    bool fallback;       /* no solver arrived: the path is feasible and continuous, but not the optimum */
+    L1L2SolverReport report; /* of the frame's window */
+} L1L2PathFrame;
+
+/* On error *out is NULL. cfg->log must outlive the object. */
+L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg);
+void l1l2_path_free(L1L2Path *path);
+
+/* As new, with its memory kept. */
+void l1l2_path_reset(L1L2Path *path);
+
+/* For the frames that are pushed from now on, also after a reset. A crop ratio changes by at most L1L2_CROP_STEP a
+ * frame: what is moved slower than that is followed exactly, a jump becomes a zoom. A path that starts has it at
+ * once. */
+#define L1L2_CROP_STEP 0.005
+void l1l2_path_set_lambda(L1L2Path *path, double lambda);
+void l1l2_path_set_crop_ratio(L1L2Path *path, double crop_ratio);
+
+/* The next frame's motion F (frame t to t-1), of which the motion model takes what it can say; one that is not finite
+ * or not invertible counts as none. starts_path: F
+ * is not used, the path before it ends. At most `window` - 1 frames may be waiting for l1l2_path_pull(). */
+void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path);
+
+/* Decides the `frames` oldest frames that have not been pulled, or all there are, by what has come. Those that already
+ * are decided stay as they are. */
+void l1l2_path_hurry(L1L2Path *path, int frames);
+
+/* No more frames: all that are left get decided. */
+void l1l2_path_finish(L1L2Path *path);
+
+/* The oldest frame that has not been pulled, if it is decided: frame t is when frame t + window - 1 has been pushed, if
+ * not sooner. */
+bool l1l2_path_pull(L1L2Path *path, L1L2PathFrame *out);
+
+#endif

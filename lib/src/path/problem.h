@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The window problem (paper, eq. 4 to 7), written once.
+ *
+ *   minimise over q_t:   sum_k w_k sum_t |D^k q_t|_1  +  sum_t lambda_t |q_t - c_t|^2,      k = 1, 2, 3
+ *   subject to           lo_t <= G_t q_t <= hi_t        (inclusion and proximity, crop.h)
+ *
+ * q_t are the parameters of P_t (geom.h: 2, 4 or 6 by the motion model), c_t those of C_t, in diagonals, relative to
+ * the window's first frame. They are scaled so that all move the frame's corners alike: it is the variable that is
+ * scaled, in both norms. w_k = 1 (eq. 5); lambda_t is lambda * 30 / frame rate.
+ *
+ * D^k q_t is the k-th backward difference, a "term". It reaches back over the `history` last frames that were given
+ * out before the window (0 to 3; the continuous join), which are constants; terms that would reach further do not
+ * exist. So order k has a term at each frame from max(0, k - history) on.
+ *
+ * P rather than B is the variable: the L1 and L2 parts then have constant coefficients, and only G depends on C_t.
+ */
+#ifndef L1L2_PATH_PROBLEM_H
+#define L1L2_PATH_PROBLEM_H
+
+#include "path/constraints.h"
+
+#define L1L2_ORDERS 3  /* of differences */
+#define L1L2_HISTORY 3 /* frames that the third difference reaches back */
+
+typedef struct L1L2PathProblem {
+    int dim;     /* components of q_t that are used: 2, 4 or 6 */
+    int rows;    /* of G_t that are used: l1l2_path_crop_row_count(dim) */
+    int count;   /* n, frames, >= 1 */
+    int history; /* frames of `past` that exist, 0..3 */
+    double past[L1L2_HISTORY][L1L2_DIM];   /* q of the frames before the window, newest last: past[2] is frame -1 */
+    double weight[L1L2_ORDERS];            /* w_k, > 0 */
+    double (*camera)[L1L2_DIM];            /* n: c_t */
+    double *lambda;                        /* n: lambda_t, >= 0 */
+    double (*G)[L1L2_CROP_ROWS][L1L2_DIM]; /* n */
+    double (*lo)[L1L2_CROP_ROWS];          /* n */
+    double (*hi)[L1L2_CROP_ROWS];          /* n */
+} L1L2PathProblem;
+
+/* A point with its duals. Term components are counted order by order: component j of term i of order k is number
+ * dim (terms of the orders below k + i) + j; see l1l2_term_index(). */
+typedef struct L1L2PathPoint {
+    double (*q)[L1L2_DIM];              /* n */
+    double *slack;                      /* term components: e >= |D^k q| */
+    double (*term_dual)[2];             /* term components: of D^k q <= e and of -D^k q <= e, >= 0 */
+    double (*crop_dual)[L1L2_CROP_ROWS]; /* n: of G q <= hi less that of G q >= lo */
+} L1L2PathPoint;
+
+/* Coefficients of the backward differences: D^k q_t = sum_m l1l2_difference[k-1][m] q_{t-m}. */
+extern const double l1l2_difference[L1L2_ORDERS][L1L2_HISTORY + 1];
+
+/* Arrays for up to `capacity` frames of a motion model of `dim` parameters; weights 1, the rest 0. NULL when out of
+ * memory. */
+L1L2PathProblem *l1l2_path_problem_create(int capacity, int dim);
+void l1l2_path_problem_free(L1L2PathProblem *p);
+
+/* Fills in frame t, whose camera path (of the motion model, as is `crop`) is `camera`. */
+void l1l2_path_problem_set(L1L2PathProblem *p, int t, const L1L2Mat *camera, double lambda, const L1L2PathCrop *crop);
+
+/* Frame of an order's first term, and how many terms it has. order: 1, 2, 3. */
+int l1l2_terms_first(int order, int history);
+int l1l2_terms(int order, int count, int history);
+int l1l2_term_index(const L1L2PathProblem *p, int order, int term, int component);
+/* Components of all terms. */
+int l1l2_term_components(const L1L2PathProblem *p);
+
+/* D^order q at frame t, component j; q: n rows. */
+double l1l2_path_difference(const L1L2PathProblem *p, const double (*q)[L1L2_DIM], int order, int t, int j);
+
+/* eq. (4) at q. */
+double l1l2_path_objective(const L1L2PathProblem *p, const double (*q)[L1L2_DIM]);
+
+/* The largest violation of a constraint row at q: <= 0 where all hold. */
+double l1l2_path_excess(const L1L2PathProblem *p, const double (*q)[L1L2_DIM]);
+
+#endif

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The sample type of 16 bits for AVX2: eight sums at a time, the same bytes as plain C.
+ *
+ * Groups as in warp_avx2.h. A window is 16 bytes: two taps of 2 or 4 components have one of their own. A shuffle puts
+ * the two taps of each lane side by side, pmaddwd weighs them. What does not fit (an edge, a window too short, rows too
+ * steep) is left to plain C.
+ */
+#include "warp/direct_u16_impl.h"
+#include "warp/x86/avx2.h"
+
+/* What a plane's samples have in common. */
+typedef struct Depth {
+    __m128i bits, shift;     /* counts for shifts */
+    __m128i rest;            /* 16 - bits */
+    __m128i narrow_shift;
+    __m256i round, max;
+} Depth;
+
+SPECIALIZED Depth load_depth(const L1L2WarpPlane *src, const int wide)
+{
+    const int round = wide ? L1L2_WARP_DIRECT_U16_ROUND : l1l2_warp_direct_u16_narrow_round(src->depth);
+    return (Depth){
+        .bits = _mm_cvtsi32_si128(src->depth),
+        .shift = _mm_cvtsi32_si128(src->shift),
+        .rest = _mm_cvtsi32_si128(16 - src->depth),
+        .narrow_shift = _mm_cvtsi32_si128(l1l2_warp_direct_u16_narrow_shift(src->depth)),
+        .round = _mm256_set1_epi32(round),
+        .max = _mm256_set1_epi16((short)((1 << src->depth) - 1)),
+    };
+}
+
+SPECIALIZED __m256i load_window(const uint8_t *low, const uint8_t *high, const Depth *depth, const int wide)
+{
+    const __m256i window = load_halves(low, high);
+    return wide ? _mm256_xor_si256(window, _mm256_set1_epi16((short)L1L2_WARP_DIRECT_U16_BIAS))
+                : _mm256_srl_epi16(window, depth->shift);
+}
+
+/* The weighted sum of one row's taps, before the cut. first: shuffle that brings a window's first two taps. */
+SPECIALIZED __m256i weigh_row(const uint8_t *low, const uint8_t *high, __m256i first, const Weights *wx,
+                              const Depth *depth, const int taps, const int components, const int wide)
+{
+    __m256i sum = _mm256_setzero_si256();
+    for (int k = 0; k < taps; k += 2) {
+        /* A window of one component has the taps 2 and 3, too. */
+        const int from = components == 1 ? k / 4 * 4 : k;
+        const __m256i window = load_window(low + from * 2 * components, high + from * 2 * components, depth, wide);
+        const __m256i order = from == k ? first : _mm256_add_epi8(first, _mm256_set1_epi8(4));
+        const __m256i two = _mm256_shuffle_epi8(window, order);
+        sum = _mm256_add_epi32(sum, _mm256_madd_epi16(two, wx->pair[k / 2]));
+    }
+    return sum;
+}
+
+/* The low halves of a's lanes and of b's, side by side. */
+SPECIALIZED __m256i pair(__m256i a, __m256i b_high)
+{
+    return _mm256_blend_epi16(a, b_high, 0xAA);
+}
+
+/* low, high: the first tap's row of each half. Not yet cut off at the ends. */
+SPECIALIZED __m256i weigh(const uint8_t *low, const uint8_t *high, ptrdiff_t stride, __m256i first, const Weights *wx,
+                          const Weights *wy, const Depth *depth, const int taps, const int components, const int wide)
+{
+    __m256i sum = depth->round, lower = _mm256_setzero_si256();
+    for (int r = 0; r < taps; r += 2) {
+        const __m256i a = weigh_row(low + r * stride, high + r * stride, first, wx, depth, taps, components, wide);
+        const __m256i b = weigh_row(low + (r + 1) * stride, high + (r + 1) * stride, first, wx, depth, taps, components,
+                                    wide);
+        if (!wide) {
+            const __m256i rows = pair(_mm256_srl_epi32(a, depth->bits), _mm256_sll_epi32(b, depth->rest));
+            sum = _mm256_add_epi32(sum, _mm256_madd_epi16(rows, wy->pair[r / 2]));
+            continue;
+        }
+        enum { LOW = L1L2_WARP_DIRECT_U16_ROW_SHIFT, HIGH = LOW + L1L2_WARP_DIRECT_U16_PART_BITS };
+        const __m256i upper_parts = pair(_mm256_srli_epi32(a, HIGH), _mm256_slli_epi32(b, 16 - HIGH));
+        const __m256i lower_parts = _mm256_and_si256(pair(_mm256_srli_epi32(a, LOW), _mm256_slli_epi32(b, 16 - LOW)),
+                                                     _mm256_set1_epi16((1 << L1L2_WARP_DIRECT_U16_PART_BITS) - 1));
+        sum = _mm256_add_epi32(sum, _mm256_madd_epi16(upper_parts, wy->pair[r / 2]));
+        lower = _mm256_add_epi32(lower, _mm256_madd_epi16(lower_parts, wy->pair[r / 2]));
+    }
+    if (!wide)
+        return _mm256_sra_epi32(sum, depth->narrow_shift);
+    sum = _mm256_add_epi32(sum, _mm256_srai_epi32(lower, L1L2_WARP_DIRECT_U16_PART_BITS));
+    return _mm256_add_epi32(_mm256_srai_epi32(sum, L1L2_WARP_DIRECT_U16_SHIFT),
+                            _mm256_set1_epi32(L1L2_WARP_DIRECT_U16_BIAS));
+}
+
+SPECIALIZED void store(uint8_t *dst, __m256i sums, const Depth *depth)
+{
+    const __m256i words = _mm256_min_epu16(_mm256_packus_epi32(sums, sums), depth->max);
+    const __m256i placed = _mm256_sll_epi16(words, depth->shift);
+    _mm_storeu_si128((void *)dst,
+                     _mm_unpacklo_epi64(_mm256_castsi256_si128(placed), _mm256_extracti128_si256(placed, 1)));
+}
+
+/* For each lane the bytes of two neighbouring taps in the half's window. offset: of the lane's sample, samples. */
+SPECIALIZED __m256i first_shuffle(__m256i offset, const int components)
+{
+    const int next = 2 * components; /* bytes from tap to tap */
+    const __m256i component = components == 1 ? _mm256_setzero_si256()
+                            : components == 2 ? _mm256_setr_epi32(0, 2, 0, 2, 0, 2, 0, 2)
+                                              : _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
+    const __m256i byte = _mm256_add_epi32(_mm256_slli_epi32(offset, components == 1 ? 1 : 2), component);
+    const __m256i twice = _mm256_or_si256(byte, _mm256_slli_epi32(byte, 8));
+    const __m256i four_times = _mm256_or_si256(twice, _mm256_slli_epi32(twice, 16));
+    return _mm256_add_epi8(four_times, _mm256_set1_epi32(0x100 | next << 16 | (next + 1) << 24));
+}
+
+SPECIALIZED Reach find_reach(const L1L2WarpPlane *src, const int taps, const int components)
+{
+    const int last_window = components == 1 ? taps / 6 * 4 : taps - 2; /* samples from the first tap */
+    const int columns = src->width - (last_window + 8 / components) + 1, rows = src->height - taps + 1;
+    return (Reach){columns > 0 ? (uint32_t)columns : 0, rows > 0 ? (uint32_t)rows : 0};
+}
+
+/* False: the group must be done otherwise. */
+SPECIALIZED bool render_group(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const Reach *reach,
+                              const Depth *depth, const int32_t *x, const int32_t *y, uint8_t *dst, const int taps,
+                              const int components, const int wide)
+{
+    const int half = 4 / components; /* samples */
+    const int longest = components == 1 ? (taps == 2 ? 6 : 4) : 4 - components;
+    const int low_x = first_tap(x[0], taps), high_x = first_tap(x[half], taps);
+    const int low_y = first_tap(y[0], taps), high_y = first_tap(y[half], taps);
+    const __m256i zero = _mm256_setzero_si256();
+    const __m256i columns = half > 1 ? from_first(x, components) : zero;
+    const __m256i rows = half > 1 ? from_first(y, components) : zero;
+    if ((uint32_t)low_x >= reach->columns || (uint32_t)high_x >= reach->columns || (uint32_t)low_y >= reach->rows ||
+        (uint32_t)high_y >= reach->rows || !all_within(columns, longest))
+        return false;
+
+    const Weights wx = load_weights(kernel, x, taps, components), wy = load_weights(kernel, y, taps, components);
+    const __m256i first = first_shuffle(columns, components);
+    const uint8_t *low = src->data + low_y * src->stride + (ptrdiff_t)low_x * 2 * components;
+    const uint8_t *high = src->data + high_y * src->stride + (ptrdiff_t)high_x * 2 * components;
+    __m256i sums = weigh(low, high, src->stride, first, &wx, &wy, depth, taps, components, wide);
+    if (half > 1 && !_mm256_testz_si256(rows, rows)) {
+        /* Some lanes are a row further, all of them up or all down: weigh that row too, and let each lane choose. */
+        const int step = _mm256_movemask_ps(_mm256_castsi256_ps(rows)) ? -1 : 1;
+        const __m256i here = _mm256_cmpeq_epi32(rows, zero), there = _mm256_cmpeq_epi32(rows, _mm256_set1_epi32(step));
+        if (_mm256_movemask_epi8(_mm256_or_si256(here, there)) != -1 || (uint32_t)(low_y + step) >= reach->rows ||
+            (uint32_t)(high_y + step) >= reach->rows)
+            return false;
+        const __m256i further = weigh(low + step * src->stride, high + step * src->stride, src->stride, first, &wx, &wy,
+                                      depth, taps, components, wide);
+        sums = _mm256_blendv_epi8(further, sums, here);
+    }
+    store(dst, sums, depth);
+    return true;
+}
+
+SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
+                     int count, uint8_t *dst, const int taps, const int components, const int wide)
+{
+    L1L2WarpRun *const plain = l1l2_warp_direct_u16_run_plain(taps, components, src->depth);
+    const Reach reach = find_reach(src, taps, components);
+    const Depth depth = load_depth(src, wide);
+    const int group = 8 / components;
+    int i = 0;
+    for (; i + group <= count; i += group)
+        if (!render_group(src, kernel, &reach, &depth, x + i, y + i, dst + 2 * components * i, taps, components, wide))
+            plain(src, kernel, x + i, y + i, group, dst + 2 * components * i);
+    plain(src, kernel, x + i, y + i, count - i, dst + 2 * components * i);
+}
+
+DEFINE_RUNS(l1l2_warp_direct_u16_run_avx2)

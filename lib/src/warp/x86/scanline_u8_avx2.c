@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Lines for AVX2: sixteen lanes of 16 bits at a time, the same bytes as plain C. Along, samples are in quarters of four
+ * lanes, each of which has two taps within eight values of the line, its window. A shuffle puts them side by side,
+ * pmaddwd weighs them.
+ */
+#include <stdlib.h>
+
+#include "warp/bilinear_u8.h"
+#include "warp/scanline_u8_impl.h"
+#include "warp/x86/lanes_avx2.h"
+
+typedef struct TapWeights {
+    __m256i tap[L1L2_WARP_MAX_TAPS];
+} TapWeights;
+
+/* As set_cubic() of warp_kernel.c. */
+SPECIALIZED TapWeights weigh_cubic(__m256i phase)
+{
+    const __m256i t = _mm256_slli_epi16(phase, 15 - L1L2_WARP_PHASE_BITS);
+    const __m256i n = _mm256_sub_epi16(words(-32768), t); /* where it does not fit, t is 0, and so are all products */
+    const __m256i q = _mm256_mulhrs_epi16(t, n);
+    const __m256i qt = _mm256_mulhrs_epi16(q, t), qn = _mm256_mulhrs_epi16(q, n);
+    const __m256i quarter = _mm256_mulhrs_epi16(q, words(4096));
+    const __m256i before = _mm256_mulhrs_epi16(qn, words(-12288)), after = _mm256_mulhrs_epi16(qt, words(-12288));
+    const __m256i left = _mm256_add_epi16(_mm256_sub_epi16(_mm256_srli_epi16(n, 1), quarter),
+                                          _mm256_mulhrs_epi16(qn, words(20480)));
+    const __m256i right = _mm256_add_epi16(_mm256_sub_epi16(_mm256_srli_epi16(t, 1), quarter),
+                                           _mm256_mulhrs_epi16(qt, words(20480)));
+    const __m256i rest = _mm256_sub_epi16(words(L1L2_WARP_ONE),
+                                          _mm256_add_epi16(_mm256_add_epi16(before, after),
+                                                           _mm256_add_epi16(left, right)));
+    const __m256i is_right = _mm256_cmpgt_epi16(t, words(1 << 14));
+    return (TapWeights){{before, _mm256_add_epi16(left, _mm256_andnot_si256(is_right, rest)),
+                      _mm256_add_epi16(right, _mm256_and_si256(is_right, rest)), after}};
+}
+
+/* From the table: the rows of sixteen phases become one vector for each of the six taps. The phases are found once
+ * more, for it takes long to get them out of a vector. */
+SPECIALIZED TapWeights weigh_lanczos(const L1L2WarpKernel *kernel, const Steps *steps, const int components,
+                                  const bool down)
+{
+    enum { CUT = L1L2_WARP_STEP_BITS - L1L2_WARP_PHASE_BITS };
+    __m256i row[8];
+    for (int i = 0; i < 8; i++) {
+        const int lanes = components == 3 && !down ? 4 : components; /* of a sample */
+        const int64_t low = steps->at + (int64_t)(i / lanes) * steps->step;
+        const int64_t high = steps->at + (int64_t)((i + 8) / lanes) * steps->step;
+        row[i] = load_halves(kernel->weights + (low >> CUT & (L1L2_WARP_PHASES - 1)) * 8,
+                             kernel->weights + (high >> CUT & (L1L2_WARP_PHASES - 1)) * 8);
+    }
+    __m256i two[8], four[6];
+    for (int i = 0; i < 8; i += 2) {
+        two[i] = _mm256_unpacklo_epi16(row[i], row[i + 1]);     /* taps 0..3 */
+        two[i + 1] = _mm256_unpackhi_epi16(row[i], row[i + 1]); /* taps 4, 5 */
+    }
+    for (int i = 0; i < 2; i++) {
+        four[3 * i] = _mm256_unpacklo_epi32(two[4 * i], two[4 * i + 2]);         /* taps 0, 1 */
+        four[3 * i + 1] = _mm256_unpackhi_epi32(two[4 * i], two[4 * i + 2]);     /* taps 2, 3 */
+        four[3 * i + 2] = _mm256_unpacklo_epi32(two[4 * i + 1], two[4 * i + 3]); /* taps 4, 5 */
+    }
+    TapWeights w;
+    for (int k = 0; k < 3; k++) {
+        w.tap[2 * k] = _mm256_unpacklo_epi64(four[k], four[3 + k]);
+        w.tap[2 * k + 1] = _mm256_unpackhi_epi64(four[k], four[3 + k]);
+    }
+    return w;
+}
+
+SPECIALIZED TapWeights weigh(const L1L2WarpKernel *kernel, const Steps *steps, __m256i position, const int taps,
+                          const int components, const bool down)
+{
+    const __m256i phase = _mm256_and_si256(position, words(L1L2_WARP_PHASES - 1));
+    return taps == 4 ? weigh_cubic(phase) : weigh_lanczos(kernel, steps, components, down);
+}
+
+/* Sixteen samples' sums over the rows below them. */
+SPECIALIZED __m256i sum_down(const uint8_t *first, ptrdiff_t stride, const __m256i *weight, const int rows)
+{
+    const __m256i to_upper_bytes = _mm256_setr_epi8(-1, 0, -1, 1, -1, 2, -1, 3, -1, 4, -1, 5, -1, 6, -1, 7,
+                                                    -1, 8, -1, 9, -1, 10, -1, 11, -1, 12, -1, 13, -1, 14, -1, 15);
+    __m256i sum = _mm256_setzero_si256();
+    for (int r = 0; r < rows; r++) {
+        const __m256i bytes = _mm256_broadcastsi128_si256(_mm_loadu_si128((const void *)(first + r * stride)));
+        const __m256i sample = _mm256_xor_si256(_mm256_shuffle_epi8(bytes, to_upper_bytes), words(-32768));
+        sum = _mm256_add_epi16(sum, _mm256_mulhrs_epi16(sample, weight[r]));
+    }
+    return sum;
+}
+
+/* Where the line crosses a row, `further` is 0 or 1 by lane: those with 1 have their taps a row further down. Without a
+ * branch, for where a line crosses changes from row to row. */
+SPECIALIZED __m256i sum_across(const uint8_t *first, ptrdiff_t stride, const TapWeights *w, __m256i further,
+                               const int taps)
+{
+    const __m256i down = _mm256_sub_epi16(_mm256_setzero_si256(), further);
+    __m256i weight[L1L2_WARP_MAX_TAPS + 1];
+    weight[0] = _mm256_andnot_si256(down, w->tap[0]);
+    for (int r = 1; r < taps; r++)
+        weight[r] = _mm256_blendv_epi8(w->tap[r], w->tap[r - 1], down);
+    weight[taps] = _mm256_and_si256(down, w->tap[taps - 1]);
+    return sum_down(first, stride, weight, taps + 1);
+}
+
+/* The steep line: row after row that any lane has. Some lane has the first one; no lane is further than `most`. */
+SPECIALIZED __m256i sum_steep(const uint8_t *first, ptrdiff_t stride, const TapWeights *w, __m256i further, int most,
+                              const int taps)
+{
+    __m256i sum = _mm256_setzero_si256();
+    for (int row = 0; row <= most; row++)
+        sum = _mm256_blendv_epi8(sum, sum_down(first + row * stride, stride, w->tap, taps),
+                                 _mm256_cmpeq_epi16(further, words(row)));
+    return sum;
+}
+
+/* How a piece crosses the source's rows: not at all, a group at most once, more often. */
+enum { FLAT, CROSSING, STEEP };
+
+/* The columns of sixteen lanes. row: the uppermost of theirs; more: rows down to the lowest one, if it is steep. */
+SPECIALIZED __m256i group_down(const uint8_t *first, ptrdiff_t stride, const L1L2WarpKernel *kernel,
+                               const Steps *steps, int64_t row, int more, const int taps, const int components,
+                               const int crossing)
+{
+    const __m256i position = positions_from(steps, (int32_t)(steps->at - (row << L1L2_WARP_STEP_BITS)), components,
+                                            true);
+    const __m256i further = _mm256_srai_epi16(position, L1L2_WARP_PHASE_BITS);
+    const TapWeights w = weigh(kernel, steps, position, taps, components, true);
+    if (crossing == FLAT)
+        return sum_down(first, stride, w.tap, taps);
+    if (crossing == CROSSING)
+        return sum_across(first, stride, &w, further, taps);
+    return sum_steep(first, stride, &w, further, more, taps);
+}
+
+/* Columns from .. end - 1 of a piece, and what a last group has beyond. All samples are in the plane. */
+SPECIALIZED void piece_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpPiece *piece,
+                            int first_column, int from, int end, int16_t *values, const int taps,
+                            const int components, const int crossing)
+{
+    const int group = group_of(components);
+    const int64_t across = (int64_t)(group - 1) * piece->step, to_low = piece->step < 0 ? across : 0;
+    const uint8_t *column = src->data + (ptrdiff_t)(first_column + from) * components - (taps / 2 - 1) * src->stride;
+    Steps steps = steps_of(piece, components);
+    steps.at += (int64_t)(from - piece->from) * piece->step;
+    for (int i = from; i < end; i += group) {
+        const int64_t low = steps.at + to_low, row = low >> L1L2_WARP_STEP_BITS;
+        const int more = (int)(((low == steps.at ? low + across : steps.at) >> L1L2_WARP_STEP_BITS) - row);
+        const __m256i sum = group_down(column + row * src->stride, src->stride, kernel, &steps, row, more, taps,
+                                       components, crossing);
+        _mm256_storeu_si256((void *)(values + i * components), sum);
+        column += group * components;
+        steps.at += (int64_t)group * piece->step;
+    }
+}
+
+SPECIALIZED int row_of(const L1L2WarpPiece *piece, int i)
+{
+    return l1l2_warp_piece_position(piece, i) >> L1L2_WARP_PHASE_BITS;
+}
+
+SPECIALIZED void run_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpScanline *line,
+                          int16_t *values, const int taps, const int components)
+{
+    const int group = group_of(components), lead = taps / 2 - 1, first = line->first;
+    /* Groups have all their columns, and sixteen bytes, in the plane if they begin here. */
+    const int inside = -first, outside = src->width - first - (LANES + components - 1) / components + 1;
+    for (int k = 0; k < line->down_pieces; k++) {
+        const L1L2WarpPiece *piece = &line->down[k];
+        const int end = end_of(line->down, k, line->down_pieces, line->columns);
+        const int row = row_of(piece, piece->from), last_row = row_of(piece, end + group - 1);
+        const int low = row < last_row ? row : last_row, high = row < last_row ? last_row : row;
+        int from = piece->from > inside ? piece->from : inside < end ? inside : end;
+        int to = end < outside ? end : outside > from ? from + (outside - from + group - 1) / group * group : from;
+        if (low < lead || high + taps - lead >= src->height)
+            from = to = end;
+        down_plain(src, kernel, first, piece, piece->from, from, values, taps, components);
+        if (line->down_pieces == 1 && low == high)
+            piece_down(src, kernel, piece, first, from, to, values, taps, components, FLAT);
+        else if (abs(piece->step) <= (1 << L1L2_WARP_STEP_BITS) / group)
+            piece_down(src, kernel, piece, first, from, to, values, taps, components, CROSSING);
+        else
+            piece_down(src, kernel, piece, first, from, to, values, taps, components, STEEP);
+        down_plain(src, kernel, first, piece, to, end, values, taps, components);
+    }
+}
+
+/* first: of the quarters' windows. Eight sums. */
+SPECIALIZED __m256i sum_along(const int16_t *first_low, const int16_t *first_high, __m256i pairs, const __m256i *weight,
+                              const int taps, const int components)
+{
+    __m256i sum = _mm256_set1_epi32(L1L2_WARP_SCANLINE_ROUND);
+    for (int k = 0; k < taps / 2; k++) {
+        const __m256i window = load_halves(first_low + 2 * k * components, first_high + 2 * k * components);
+        sum = _mm256_add_epi32(sum, _mm256_madd_epi16(_mm256_shuffle_epi8(window, pairs), weight[k]));
+    }
+    return _mm256_srai_epi32(sum, L1L2_WARP_SCANLINE_SHIFT);
+}
+
+/* The samples of sixteen lanes. */
+SPECIALIZED void group_along(const L1L2WarpKernel *kernel, const Steps *steps, const int16_t *values, uint8_t *dst,
+                             const int taps, const int components)
+{
+    const int64_t at = steps->at, quarter_step = (int64_t)group_of(components) / 4 * steps->step;
+    const __m256i position = positions_from(steps, (int32_t)(at & ((1 << L1L2_WARP_STEP_BITS) - 1)), components, false);
+    const __m256i column = _mm256_srai_epi16(position, L1L2_WARP_PHASE_BITS);
+    const TapWeights w = weigh(kernel, steps, position, taps, components, false);
+
+    /* The bytes of the first pair of taps in a quarter's window. */
+    const __m256i offset = _mm256_sub_epi16(column, _mm256_shufflehi_epi16(_mm256_shufflelo_epi16(column, 0), 0));
+    const __m256i component = components == 1 ? words(0) : components == 2 ? _mm256_set1_epi32(0x02020000)
+                                                         : _mm256_set1_epi64x(0x0606040402020000);
+    const __m256i left = _mm256_add_epi16(_mm256_mullo_epi16(offset, words(components * 0x0202)),
+                                          _mm256_add_epi16(component, words(0x0100)));
+    const __m256i right = _mm256_add_epi16(left, words(components * 0x0202));
+    __m256i low[L1L2_WARP_MAX_TAPS / 2], high[L1L2_WARP_MAX_TAPS / 2];
+    for (int k = 0; k < taps / 2; k++) {
+        low[k] = _mm256_unpacklo_epi16(w.tap[2 * k], w.tap[2 * k + 1]);
+        high[k] = _mm256_unpackhi_epi16(w.tap[2 * k], w.tap[2 * k + 1]);
+    }
+    const int16_t *first[4];
+    for (int q = 0; q < 4; q++)
+        first[q] = values + ((at + q * quarter_step) >> L1L2_WARP_STEP_BITS) * components - (taps / 2 - 1) * components;
+    store(dst, _mm256_packs_epi32(
+        sum_along(first[0], first[2], _mm256_unpacklo_epi16(left, right), low, taps, components),
+        sum_along(first[1], first[3], _mm256_unpackhi_epi16(left, right), high, taps, components)), components);
+}
+
+/* Groups overrun a piece's end where the next one writes over it; the last one's rest is left to plain C. */
+SPECIALIZED void run_along(const L1L2WarpKernel *kernel, const L1L2WarpScanline *line, const int16_t *values,
+                           uint8_t *dst, const int taps, const int components)
+{
+    const int group = group_of(components), count = line->count;
+    for (int k = 0; k < line->along_pieces; k++) {
+        const L1L2WarpPiece *piece = &line->along[k];
+        Steps steps = steps_of(piece, components);
+        const int end = end_of(line->along, k, line->along_pieces, count);
+        int i = piece->from;
+        for (; i < end && i + group <= count; i += group, steps.at += (int64_t)group * steps.step)
+            group_along(kernel, &steps, values, dst + i * components, taps, components);
+        along_plain(kernel, piece, i, end, values, dst, taps, components);
+    }
+}
+
+SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpScanline *line, uint8_t *dst,
+                     const int taps, const int components)
+{
+    int16_t values[LINE_VALUES];
+    run_down(src, kernel, line, values, taps, components);
+    run_along(kernel, line, values, dst, taps, components);
+}
+
+DEFINE_RUNS(l1l2_warp_scanline_run_avx2, l1l2_warp_bilinear_run_avx2)

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+/* Camera paths that are known exactly, run through path.h as the stabilizer does. */
+#ifndef PATH_FIXTURE_H
+#define PATH_FIXTURE_H
+
+#include <string.h>
+
+#include "checkx.h"
+#include "common/rng.h"
+#include "path/constraints.h"
+#include "path/path.h"
+
+enum { MAX_FRAMES = 1600 };
+
+static const double diagonal_px = 734.3023900274327; /* of 640x360 */
+
+typedef struct Run {
+    int frames;
+    L1L2Mat F[MAX_FRAMES];
+    bool starts[MAX_FRAMES];
+    int hurry[MAX_FRAMES]; /* frames that are let go after frame t has come, of those that are held */
+    L1L2PathFrame out[MAX_FRAMES];
+} Run;
+
+static inline L1L2PathConfig defaults(void)
+{
+    return (L1L2PathConfig){.width = 640, .height = 360, .lambda = 0.5, .frame_rate = 30, .crop_ratio = 0.9,
+                            .weights = {1, 1, 1}, .window = 150, .overlap = 100,
+                            .join = L1L2STAB_JOIN_CONTINUOUS, .model = L1L2STAB_MOTION_MODEL_SIMILARITY};
+}
+
+/* Pushes all frames, pulling as the stabilizer does: frame t once frame t + N - 1 has come, or when it is hurried. */
+static inline void run(const L1L2PathConfig *cfg, Run *r)
+{
+    L1L2Path *path;
+    ck_assert_int_eq(l1l2_path_create(&path, cfg), L1L2STAB_OK);
+    int pulled = 0;
+    for (int t = 0; t < r->frames; t++) {
+        l1l2_path_push(path, &r->F[t], r->starts[t]);
+        if (t - pulled + 1 == cfg->window)
+            ck_assert_msg(l1l2_path_pull(path, &r->out[pulled++]), "frame %d was not decided in time", pulled - 1);
+        if (r->hurry[t] > 0)
+            l1l2_path_hurry(path, r->hurry[t]);
+        for (int i = 0; i < r->hurry[t] && pulled <= t; i++)
+            ck_assert_msg(l1l2_path_pull(path, &r->out[pulled++]), "frame %d was hurried in vain", pulled - 1);
+    }
+    l1l2_path_finish(path);
+    while (pulled < r->frames)
+        ck_assert(l1l2_path_pull(path, &r->out[pulled++]));
+    L1L2PathFrame beyond;
+    ck_assert(!l1l2_path_pull(path, &beyond));
+    l1l2_path_free(path);
+}
+
+static inline Run *new_run(int frames)
+{
+    Run *r = calloc(1, sizeof *r);
+    r->frames = frames;
+    for (int t = 0; t < frames; t++)
+        r->F[t] = l1l2_mat_identity();
+    return r;
+}
+
+static inline double uniform(L1L2Rng *rng, double low, double high)
+{
+    return low + (high - low) * (l1l2_rng_next(rng) / 4294967296.0);
+}
+
+/* A pan that wanders, with a shake: each frame's pose is the pan's plus noise; F from pose to pose. Px at 640x360. */
+static inline Run *wandering_run(int frames, double pan_px, double wander_px, double shake_px, uint64_t seed)
+{
+    Run *r = new_run(frames);
+    L1L2Rng rng = l1l2_rng_seeded(seed);
+    L1L2Mat before = l1l2_mat_identity();
+    for (int t = 0; t < frames; t++) {
+        const double roll = uniform(&rng, -0.002, 0.002) * shake_px;
+        const L1L2Mat pose = l1l2_mat_similarity(cos(roll), sin(roll),
+            (pan_px * t + wander_px * sin(t / 23.0) + uniform(&rng, -shake_px, shake_px)) / diagonal_px,
+            (wander_px * sin(t / 37.0) + uniform(&rng, -shake_px, shake_px)) / diagonal_px);
+        L1L2Mat inverse;
+        l1l2_mat_inverse(before, &inverse);
+        r->F[t] = l1l2_mat_mul(inverse, pose);
+        before = pose;
+    }
+    return r;
+}
+
+static inline Run *shaky_run(int frames, double pan_px, double shake_px, uint64_t seed)
+{
+    return wandering_run(frames, pan_px, 0.0, shake_px, seed);
+}
+
+static inline double speed_px(const Run *r, int t)
+{
+    return r->out[t].S.m[2] * diagonal_px;
+}
+
+#endif

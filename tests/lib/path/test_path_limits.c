@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: MIT */
+/* Whatever comes in, every update transform is inside its limits; and knobs that change on the way. */
+#include "path/path_fixture.h"
+
+START_TEST(every_update_transform_stays_inside_whatever_the_motion)
+{
+    static const double shakes[] = {1, 20, 200, 2000};
+    for (int i = 0; i < 4; i++)
+        for (int join = 0; join < 2; join++) {
+            L1L2PathConfig cfg = defaults();
+            cfg.window = 40, cfg.overlap = join == L1L2STAB_JOIN_BLEND ? 12 : 20;
+            cfg.join = (L1L2StabJoin)join;
+            cfg.crop_ratio = 0.8;
+            const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
+            Run *r = shaky_run(200, 2.0, shakes[i], (uint64_t)i);
+            run(&cfg, r);
+            for (int t = 0; t < r->frames; t++) {
+                ck_assert_double_le(l1l2_path_crop_excess(&crop, &r->out[t].B), 1e-12);
+                ck_assert(!r->out[t].fallback);
+            }
+            free(r);
+        }
+}
+END_TEST
+
+START_TEST(numbers_that_no_camera_gives_are_survived)
+{
+    const L1L2PathConfig cfg = defaults();
+    const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
+    Run *r = new_run(400);
+    int fallbacks = 0;
+    for (int t = 100; t < 250; t++)
+        r->F[t] = l1l2_mat_similarity(1e-4, 0.0, 0.01, 0.0); /* C_t runs out of double's range within the window */
+    run(&cfg, r);
+    for (int t = 0; t < r->frames; t++) {
+        ck_assert(l1l2_mat_is_finite(&r->out[t].B));
+        ck_assert_double_le(l1l2_path_crop_excess(&crop, &r->out[t].B), 1e-9);
+        fallbacks += r->out[t].fallback;
+    }
+    ck_assert_int_gt(fallbacks, 0);
+    ck_assert(!r->out[399].fallback); /* and recovered from */
+    free(r);
+}
+END_TEST
+
+/* A lambda that is no number lets no solver arrive, though the motion is an ordinary one. */
+START_TEST(where_no_solver_arrives_the_path_goes_on_without_a_jump)
+{
+    const L1L2PathConfig cfg = defaults();
+    const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
+    Run *r = shaky_run(480, 1.0, 2.0, 8);
+    L1L2Path *path;
+    ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
+    int pulled = 0, held = 0;
+    for (int t = 0; t < r->frames; t++) {
+        if (t == 210 || t == 215)
+            l1l2_path_set_lambda(path, t == 210 ? NAN : 0.5);
+        l1l2_path_push(path, &r->F[t], false);
+        if (t - pulled + 1 == cfg.window)
+            ck_assert(l1l2_path_pull(path, &r->out[pulled++]));
+    }
+    for (int t = 1; t < pulled; t++) {
+        ck_assert_double_le(l1l2_path_crop_excess(&crop, &r->out[t].B), 1e-12);
+        if (r->out[t].fallback && !r->out[t - 1].fallback)
+            ck_assert_near(speed_px(r, t), speed_px(r, t - 1), 0.1);
+        held += r->out[t].fallback;
+    }
+    ck_assert_int_ge(held, 50);
+    ck_assert(!r->out[pulled - 1].fallback);
+    l1l2_path_free(path);
+    free(r);
+}
+END_TEST
+
+START_TEST(a_crop_that_changes_is_ramped_and_always_met)
+{
+    const L1L2PathConfig cfg = defaults();
+    Run *r = shaky_run(500, 1.0, 5.0, 4);
+    L1L2Path *path;
+    ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
+    int pulled = 0;
+    double before = cfg.crop_ratio;
+    for (int t = 0; t < r->frames + cfg.window; t++) {
+        if (t == 200)
+            l1l2_path_set_crop_ratio(path, 0.6);
+        if (t == 215)
+            l1l2_path_set_crop_ratio(path, 0.95); /* on the way */
+        if (t < r->frames)
+            l1l2_path_push(path, &r->F[t], false);
+        else if (t == r->frames)
+            l1l2_path_finish(path);
+        if (t - pulled + 1 < cfg.window || pulled == r->frames)
+            continue;
+        L1L2PathFrame *f = &r->out[pulled];
+        ck_assert(l1l2_path_pull(path, f));
+        const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, f->crop_ratio, 4);
+        ck_assert_double_le(l1l2_path_crop_excess(&crop, &f->B), 1e-12);
+        ck_assert_double_le(fabs(f->crop_ratio - before), L1L2_CROP_STEP + 1e-12);
+        ck_assert(!f->fallback);
+        before = f->crop_ratio;
+        pulled++;
+    }
+    ck_assert_int_eq(pulled, r->frames);
+    ck_assert_near(r->out[199].crop_ratio, 0.9, 0.0);
+    ck_assert_near(r->out[214].crop_ratio, 0.825, 1e-12);
+    ck_assert_near(r->out[239].crop_ratio, 0.95, 1e-12);
+    l1l2_path_free(path);
+    free(r);
+}
+END_TEST
+
+START_TEST(lambda_travels_with_the_frames_it_was_set_for)
+{
+    const L1L2PathConfig cfg = defaults();
+    Run *r = shaky_run(600, 0.5, 5.0, 4);
+    L1L2Path *path;
+    ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
+    double left[2] = {0.0, 0.0};
+    int pulled = 0;
+    for (int t = 0; t < r->frames; t++) {
+        if (t == 300)
+            l1l2_path_set_lambda(path, 100.0);
+        l1l2_path_push(path, &r->F[t], false);
+        if (t - pulled + 1 == cfg.window)
+            ck_assert(l1l2_path_pull(path, &r->out[pulled++]));
+    }
+    for (int t = 2; t < pulled; t++) {
+        ck_assert_near(r->out[t].lambda, t < 300 ? 0.5 : 100.0, 0.0);
+        left[t >= 300] += fabs(speed_px(r, t) - speed_px(r, t - 1));
+    }
+    ck_assert_double_gt(left[1] / (pulled - 300), 5.0 * left[0] / 298); /* the rest follows the shake */
+    l1l2_path_free(path);
+    free(r);
+}
+END_TEST
+
+START_TEST(a_motion_that_is_none_counts_as_still)
+{
+    const L1L2PathConfig cfg = defaults();
+    Run *r = shaky_run(300, 1.0, 4.0, 8);
+    r->F[50].m[2] = NAN;
+    r->F[120] = l1l2_mat_similarity(0.0, 0.0, 0.0, 0.0);
+    run(&cfg, r);
+    for (int t = 0; t < r->frames; t++)
+        ck_assert(l1l2_mat_is_finite(&r->out[t].B) && !r->out[t].fallback);
+    ck_assert(l1l2_mat_is_identity(&r->out[50].F) && l1l2_mat_is_identity(&r->out[120].F));
+    free(r);
+}
+END_TEST
+
+START_TEST(a_zoom_of_ten_and_jumps_of_half_a_frame_are_solved)
+{
+    const L1L2PathConfig cfg = defaults();
+    const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
+    Run *zoom = wandering_run(450, 0.5, 10.0, 3.0, 5), *jumps = shaky_run(450, 0.5, 3.0, 5);
+    for (int t = 100; t < 250; t++)
+        zoom->F[t] = l1l2_mat_mul(zoom->F[t], l1l2_mat_similarity(pow(10.0, 1.0 / 150.0), 0.0, 0.0, 0.0));
+    for (int t = 20; t < 450; t += 37)
+        jumps->F[t] = l1l2_mat_mul(jumps->F[t], l1l2_mat_translation(t % 2 ? 0.436 : -0.436, t % 3 ? 0.245 : -0.245));
+    run(&cfg, zoom);
+    run(&cfg, jumps);
+    for (int t = 0; t < 450; t++) {
+        ck_assert_double_le(l1l2_path_crop_excess(&crop, &zoom->out[t].B), 1e-12);
+        ck_assert_double_le(l1l2_path_crop_excess(&crop, &jumps->out[t].B), 1e-12);
+        ck_assert(!zoom->out[t].fallback && !jumps->out[t].fallback);
+    }
+    free(zoom);
+    free(jumps);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("path_limits");
+    TCase *tcase = tcase_create("path_limits");
+    tcase_set_timeout(tcase, 60);
+    tcase_add_test(tcase, every_update_transform_stays_inside_whatever_the_motion);
+    tcase_add_test(tcase, numbers_that_no_camera_gives_are_survived);
+    tcase_add_test(tcase, where_no_solver_arrives_the_path_goes_on_without_a_jump);
+    tcase_add_test(tcase, a_crop_that_changes_is_ramped_and_always_met);
+    tcase_add_test(tcase, lambda_travels_with_the_frames_it_was_set_for);
+    tcase_add_test(tcase, a_motion_that_is_none_counts_as_still);
+    tcase_add_test(tcase, a_zoom_of_ten_and_jumps_of_half_a_frame_are_solved);
+    suite_add_tcase(suite, tcase);
+    return checkx_run(suite);
+}

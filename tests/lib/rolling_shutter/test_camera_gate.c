@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "checkx.h"
+#include "common/rng.h"
+#include "rolling_shutter/camera_gate.h"
+
+enum { FRAMES = 300 };
+static const double pi = 3.14159265358979;
+static const double px = 1.0 / 734.0; /* of 640x360 */
+static const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.436, 0.245};
+
+/* A hand: px from where it is held, along one axis, at a time in frames. */
+static double hand(int axis, double time)
+{
+    return 3.0 * sin(0.13 * time + axis) + 2.0 * sin(0.4 * time + 2.0 * axis) + sin(0.9 * time + 3.0 * axis);
+}
+
+static L1L2Mat motion_at(double time, double strength)
+{
+    return l1l2_mat_translation(strength * px * (hand(0, time) - hand(0, time - 1.0)),
+                                strength * px * (hand(1, time) - hand(1, time - 1.0)));
+}
+
+/* Each row moves as the camera did when it was read: at t + readout * row. */
+static L1L2ShutterResidual rows_at(int t, double readout)
+{
+    const L1L2Mat mean = motion_at(t, 1.0);
+    L1L2ShutterResidual r = {{0.0}};
+    for (int k = 0; k < L1L2_SHUTTER_BANDS; k++) {
+        const L1L2Mat own = motion_at(t + readout * l1l2_shutter_residual_band(k), 1.0);
+        r.p[L1L2_SHUTTER_X + k] = own.m[2] - mean.m[2];
+        r.p[L1L2_SHUTTER_Y + k] = own.m[5] - mean.m[5];
+    }
+    return r;
+}
+
+/* Something that sways before the left side: 1 px of zoom and tilt in x. */
+static L1L2ShutterResidual mover_at(int t)
+{
+    L1L2ShutterResidual r = {{0.0}};
+    r.p[L1L2_SHUTTER_ZOOM] = 2.0 * px * sin(2.0 * pi * t / 70.0);
+    r.p[L1L2_SHUTTER_TILT] = -2.0 * px * sin(2.0 * pi * t / 70.0);
+    return r;
+}
+
+START_TEST(rows_follow_the_camera_whichever_way_they_are_read)
+{
+    const double readouts[] = {-0.9, 0.3, 1.0};
+    for (int i = 0; i < 3; i++) {
+        L1L2ShutterGate cause = {.known = 0};
+        for (int t = 0; t < FRAMES; t++) {
+            L1L2ShutterStep step = {.r = rows_at(t, readouts[i])};
+            const L1L2Mat F = motion_at(t, 1.0);
+            l1l2_shutter_gate_push(&cause, &shape, &F, &step);
+        }
+        ck_assert_double_gt(l1l2_shutter_gate_share(&cause), 0.9);
+        ck_assert_double_le(l1l2_shutter_gate_share(&cause), 1.0);
+    }
+}
+END_TEST
+
+START_TEST(what_moves_by_itself_does_not_follow_the_camera)
+{
+    const double strengths[] = {1.0, 0.1, 0.0}; /* a hand, a stand, nothing moves */
+    for (int i = 0; i < 3; i++) {
+        L1L2ShutterGate cause = {.known = 0};
+        double explained = 0.0, all = 0.0;
+        for (int t = 0; t < FRAMES; t++) {
+            L1L2ShutterStep step = {.r = mover_at(t)};
+            const L1L2Mat F = motion_at(t, strengths[i]);
+            l1l2_shutter_gate_push(&cause, &shape, &F, &step);
+            explained += step.explained[L1L2_VALIDATION_CAMERA], all += step.all[L1L2_VALIDATION_CAMERA];
+            ck_assert_double_lt(l1l2_shutter_gate_share(&cause),
+                                0.3); /* by chance for a while, but never all believed */
+        }
+        ck_assert_double_lt(explained, 0.02 * all);
+    }
+}
+END_TEST
+
+START_TEST(a_shutter_is_told_of_a_frame_two_frames_later)
+{
+    L1L2ShutterGate cause = {.known = 0};
+    for (int t = 0; t < FRAMES; t++) {
+        L1L2ShutterStep step = {.r = rows_at(t, 0.7)};
+        if (t < L1L2_SHUTTER_GATE_DELAY)
+            memset(&step.r, 0, sizeof step.r);
+        const L1L2Mat F = motion_at(t, 1.0);
+        l1l2_shutter_gate_push(&cause, &shape, &F, &step);
+        ck_assert((step.all[L1L2_VALIDATION_CAMERA] > 0.0) == (t >= 2 * L1L2_SHUTTER_GATE_DELAY));
+    }
+}
+END_TEST
+
+START_TEST(what_is_learned_outlives_a_cut_but_nothing_is_told_across_it)
+{
+    L1L2ShutterGate cause = {.known = 0};
+    for (int t = 0; t < FRAMES; t++) {
+        L1L2ShutterStep step = {.r = rows_at(t, 0.7)};
+        const L1L2Mat F = motion_at(t, 1.0);
+        if (t == 200)
+            l1l2_shutter_gate_break(&cause);
+        l1l2_shutter_gate_push(&cause, &shape, &F, &step);
+        if (t >= 200 && t < 204)
+            ck_assert_double_eq(l1l2_shutter_gate_share(&cause), 0.0);
+        if (t >= 204)
+            ck_assert_double_gt(l1l2_shutter_gate_share(&cause), 0.8);
+    }
+}
+END_TEST
+
+START_TEST(a_lean_is_a_stretch_and_no_similarity_is)
+{
+    const L1L2ShutterModel homography = {L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, 0.436, 0.245};
+    const L1L2ShutterResidual lean = {{0.0, 0.03}}, longer = {{0.02, 0.0, 0.0, 0.0, -0.01}};
+    const L1L2ShutterResidual similar = {{0.02, -0.01, 0.1, 0.01, 0.02, 0.2}};
+    L1L2ShutterResidual rows = {{0.0}};
+    for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
+        rows.p[L1L2_SHUTTER_X + k] = 0.03 * l1l2_shutter_residual_band(k) * 2.0 * shape.half_h;
+    ck_assert_near(l1l2_shutter_residual_stretch(&homography, &lean), 0.03, 1e-12);
+    ck_assert_near(l1l2_shutter_residual_stretch(&homography, &longer), 0.03, 1e-12);
+    ck_assert_near(l1l2_shutter_residual_stretch(&homography, &similar), 0.0, 1e-12);
+    ck_assert_near(l1l2_shutter_residual_stretch(&shape, &rows), 0.03,
+                   0.003); /* Gaussians flatten the first and last rows */
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("residual_cause");
+    TCase *tcase = tcase_create("cause");
+    tcase_add_test(tcase, rows_follow_the_camera_whichever_way_they_are_read);
+    tcase_add_test(tcase, what_moves_by_itself_does_not_follow_the_camera);
+    tcase_add_test(tcase, a_shutter_is_told_of_a_frame_two_frames_later);
+    tcase_add_test(tcase, what_is_learned_outlives_a_cut_but_nothing_is_told_across_it);
+    tcase_add_test(tcase, a_lean_is_a_stretch_and_no_similarity_is);
+    suite_add_tcase(suite, tcase);
+    return checkx_run(suite);
+}

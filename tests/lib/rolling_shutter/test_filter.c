@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "checkx.h"
+#include "common/rng.h"
+#include "path/constraints.h"
+#include "rolling_shutter/filter.h"
+#include "rolling_shutter/mesh.h"
+
+enum { WIDTH = 640, HEIGHT = 360, WINDOW = 60 };
+static const double pi = 3.14159265358979;
+static const double diagonal_px = 734.30239;
+
+static L1L2ShutterFilter *wobble_new(L1L2StabRollingShutter model, int window)
+{
+    const L1L2ShutterFilterConfig cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, window};
+    L1L2ShutterFilter *w;
+    ck_assert_int_eq(l1l2_shutter_filter_create(&w, &cfg), L1L2STAB_OK);
+    return w;
+}
+
+/* A camera that swings sideways: where it is, diagonals, at a time in frames. */
+typedef struct Swing {
+    double amplitude, frequency; /* diagonals; turns a frame */
+    double readout;              /* frames */
+} Swing;
+
+static double camera_at(const Swing *s, double time)
+{
+    return s->amplitude * sin(2.0 * pi * s->frequency * time);
+}
+
+/* What the bands do from frame t to t-1, exactly; F is their mean. */
+static L1L2ShutterStep step_of(const Swing *s, int t, L1L2Mat *F)
+{
+    L1L2ShutterStep step = {.explained = {1.0, 1.0, 1.0, 1.0}, .all = {1.0, 1.0, 1.0, 1.0}};
+    double mean = 0.0, x[L1L2_SHUTTER_BANDS];
+    for (int k = 0; k < L1L2_SHUTTER_BANDS; k++) {
+        const double at = s->readout * l1l2_shutter_residual_band(k);
+        x[k] = camera_at(s, t + at) - camera_at(s, t - 1 + at);
+        mean += x[k] / L1L2_SHUTTER_BANDS;
+    }
+    for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
+        step.r.p[L1L2_SHUTTER_X + k] = x[k] - mean;
+    *F = l1l2_mat_translation(mean, 0.0);
+    return step;
+}
+
+/* Runs the swing through, and gives the rms of the bands' error, px: against where each band was less the mean. */
+static double run_swing(const Swing *s, int frames, double *readout, double *without)
+{
+    L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    double sum = 0.0, all = 0.0;
+    int count = 0;
+    for (int t = 0, out = 0; out < frames; t++) {
+        L1L2Mat F;
+        const L1L2ShutterStep step = step_of(s, t, &F);
+        if (t < frames)
+            l1l2_shutter_filter_push(w, &F, t > 0 ? &step : NULL, t == 0);
+        if (t < WINDOW - 1)
+            continue;
+        const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(w);
+        double mean = 0.0;
+        for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
+            mean += camera_at(s, out + s->readout * l1l2_shutter_residual_band(k)) / L1L2_SHUTTER_BANDS;
+        for (int k = 0; k < L1L2_SHUTTER_BANDS && out >= 40; k++, count++) {
+            const double truth = camera_at(s, out + s->readout * l1l2_shutter_residual_band(k)) - mean;
+            sum += (e->p[L1L2_SHUTTER_X + k] - truth) * (e->p[L1L2_SHUTTER_X + k] - truth);
+            all += truth * truth;
+        }
+        out++;
+    }
+    *readout = l1l2_shutter_filter_readout(w);
+    *without = sqrt(all / count) * diagonal_px;
+    l1l2_shutter_filter_free(w);
+    return sqrt(sum / count) * diagonal_px;
+}
+
+START_TEST(the_rows_own_skew_is_found_and_not_only_its_changes)
+{
+    const double frequencies[] = {0.02, 0.05, 0.1, 0.17, 0.33, 0.66};
+    for (int i = 0; i < 6; i++) {
+        const Swing swing = {4.0 / diagonal_px, frequencies[i], 0.7};
+        double readout, without;
+        const double error = run_swing(&swing, 240, &readout, &without);
+        ck_assert_msg(error < 0.1 * without, "%g turns a frame: %g px of %g", frequencies[i], error, without);
+    }
+}
+END_TEST
+
+START_TEST(the_readout_is_found_whichever_way_it_runs)
+{
+    const double readouts[] = {-0.9, -0.4, 0.0, 0.3, 0.6, 0.95};
+    for (int i = 0; i < 6; i++) {
+        const Swing swing = {4.0 / diagonal_px, 0.06, readouts[i]};
+        double readout, without;
+        run_swing(&swing, 240, &readout, &without);
+        ck_assert_near(readout, readouts[i], 0.05);
+    }
+}
+END_TEST
+
+START_TEST(frames_without_a_measured_residual_and_cuts_end_nothing)
+{
+    L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    const Swing swing = {4.0 / diagonal_px, 0.1, 0.7};
+    for (int t = 0, out = 0; out < 200; t++) {
+        L1L2Mat F;
+        const L1L2ShutterStep step = step_of(&swing, t, &F);
+        const bool cut = t == 0 || t == 100;
+        if (t < 200)
+            l1l2_shutter_filter_push(w, &F, cut || t % 17 == 0 ? NULL : &step, cut);
+        if (t < WINDOW - 1)
+            continue;
+        const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(w);
+        for (int k = 0; k < L1L2_SHUTTER_SIZE; k++)
+            ck_assert_double_lt(fabs(e->p[k]), 10.0 / diagonal_px);
+        out++;
+    }
+    l1l2_shutter_filter_free(w);
+}
+END_TEST
+
+/* All witnesses but one. */
+START_TEST(what_not_all_columns_tell_alike_or_the_camera_did_not_cause_changes_nothing)
+{
+    const int silent[] = {L1L2_SPLIT_HALVES, L1L2_SPLIT_RIMS, L1L2_VALIDATION_CAMERA};
+    for (int i = 0; i < 3; i++) {
+        L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+        const L1L2Mat F = l1l2_mat_translation(0.01, 0.0);
+        L1L2ShutterStep step = {{{0.001, 0.002, 0.003, 0.001}}, {0.9, 0.9, 0.9, 0.9}, {1.0, 1.0, 1.0, 1.0}};
+        step.explained[silent[i]] = 0.0;
+        for (int t = 0; t < WINDOW; t++)
+            l1l2_shutter_filter_push(w, &F, &step, t == 0);
+        for (int t = 0; t < WINDOW; t++) {
+            const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(w);
+            for (int k = 0; k < L1L2_SHUTTER_SIZE; k++)
+                ck_assert_double_eq(e->p[k], 0.0);
+        }
+        l1l2_shutter_filter_free(w);
+    }
+}
+END_TEST
+
+START_TEST(a_fast_pan_leans_by_3_percent_at_most)
+{
+    const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.5 * WIDTH / diagonal_px,
+                                     0.5 * HEIGHT / diagonal_px};
+    const Swing swing = {4.0 / diagonal_px, 0.06, 0.7};
+    L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    double most = 0.0;
+    for (int t = 0, out = 0; out < 240; t++) {
+        L1L2Mat F;
+        const L1L2ShutterStep step = step_of(&swing, t, &F);
+        F.m[2] += 40.0 / diagonal_px; /* a lean of 28 px, 8 % */
+        if (t < 240)
+            l1l2_shutter_filter_push(w, &F, t > 0 ? &step : NULL, t == 0);
+        if (t < WINDOW - 1)
+            continue;
+        most = fmax(most, l1l2_shutter_residual_stretch(&shape, l1l2_shutter_filter_pull(w)));
+        out++;
+    }
+    ck_assert_near(most, 0.03, 1e-9);
+    l1l2_shutter_filter_free(w);
+}
+END_TEST
+
+START_TEST(what_explains_nothing_changes_nothing)
+{
+    L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, WINDOW);
+    const L1L2Mat F = l1l2_mat_translation(0.01, 0.0), map = l1l2_mat_similarity(0.9, 0.01, 3.0, 2.0);
+    double reach;
+    for (int t = 0; t < WINDOW; t++) {
+        const L1L2ShutterStep step = {{{0.001, 0.002, 0.003, 0.001}}, {-0.1, -0.1, -0.1, -0.1}, {1.0, 1.0, 1.0, 1.0}};
+        l1l2_shutter_filter_push(w, &F, &step, t == 0);
+    }
+    for (int t = 0; t < WINDOW; t++) {
+        l1l2_shutter_filter_pull(w);
+        ck_assert_ptr_null(l1l2_shutter_filter_mesh(w, &map, 1.0, &reach));
+        ck_assert_double_eq(reach, 0.0);
+    }
+    l1l2_shutter_filter_free(w);
+}
+END_TEST
+
+START_TEST(reset_is_as_new)
+{
+    const Swing swing = {4.0 / diagonal_px, 0.1, 0.7};
+    L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    L1L2ShutterResidual first[2];
+    for (int run = 0; run < 2; run++) {
+        for (int t = 0; t < WINDOW; t++) {
+            L1L2Mat F;
+            const L1L2ShutterStep step = step_of(&swing, t, &F);
+            l1l2_shutter_filter_push(w, &F, &step, t == 0);
+        }
+        for (int t = 0; t < 30; t++)
+            first[run] = *l1l2_shutter_filter_pull(w);
+        l1l2_shutter_filter_reset(w);
+    }
+    ck_assert_mem_eq(&first[0], &first[1], sizeof first[0]);
+    l1l2_shutter_filter_free(w);
+}
+END_TEST
+
+START_TEST(none_is_no_object_and_that_is_fine)
+{
+    const L1L2ShutterFilterConfig cfg = {L1L2STAB_ROLLING_SHUTTER_NONE, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW};
+    const L1L2Mat map = l1l2_mat_identity();
+    L1L2ShutterFilter *w;
+    double reach = 1.0;
+    ck_assert_int_eq(l1l2_shutter_filter_create(&w, &cfg), L1L2STAB_OK);
+    ck_assert_ptr_null(w);
+    l1l2_shutter_filter_reset(w);
+    l1l2_shutter_filter_push(w, &map, NULL, true);
+    ck_assert_ptr_null(l1l2_shutter_filter_pull(w));
+    ck_assert_ptr_null(l1l2_shutter_filter_mesh(w, &map, 1.0, &reach));
+    ck_assert_double_eq(reach, 0.0);
+    ck_assert_double_eq(l1l2_shutter_filter_readout(w), 0.0);
+    l1l2_shutter_filter_free(w);
+}
+END_TEST
+
+static double uniform(L1L2Rng *rng, double least, double most)
+{
+    return least + (most - least) * (l1l2_rng_below(rng, 1u << 30) / (double)(1u << 30));
+}
+
+static L1L2ShutterResidual random_residual(L1L2Rng *rng, double size)
+{
+    L1L2ShutterResidual r;
+    for (int i = 0; i < L1L2_SHUTTER_SIZE; i++)
+        r.p[i] = uniform(rng, -size, size);
+    return r;
+}
+
+/* A B_t that a path may have: anything, pulled in until the crop window is inside. */
+static L1L2Mat random_map(L1L2Rng *rng, double ratio)
+{
+    const L1L2PathCrop crop = l1l2_path_crop_make(WIDTH, HEIGHT, ratio, 4);
+    const L1L2Mat wild = l1l2_mat_similarity(uniform(rng, 0.9, 1.1), uniform(rng, -0.1, 0.1), uniform(rng, -0.3, 0.3),
+                                             uniform(rng, -0.3, 0.3));
+    const L1L2Mat B = l1l2_path_crop_admit(&crop, &wild);
+    return l1l2_mat_mul(l1l2_mat_rescale(B, diagonal_px), l1l2_mat_diagonal(ratio, ratio));
+}
+
+/* Cells are bilinear, so their nodes tell about every sample. */
+START_TEST(no_sample_is_outside_the_source_for_10000_paths_and_residuals)
+{
+    L1L2Rng rng = l1l2_rng_seeded(3);
+    L1L2WarpMesh mesh;
+    ck_assert(l1l2_warp_mesh_init(&mesh, WIDTH, HEIGHT));
+    for (int i = 0; i < 10000; i++) {
+        const L1L2ShutterModel shape = {i % 2 ? L1L2STAB_ROLLING_SHUTTER_MIXTURE : L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY,
+                                         0.5 * WIDTH / diagonal_px, 0.5 * HEIGHT / diagonal_px};
+        const double size = i % 5 == 0 ? 1.0 : i % 5 == 1 ? 0.05 : 0.005;
+        const L1L2Mat map = random_map(&rng, uniform(&rng, 0.5, 0.99));
+        const L1L2ShutterResidual r = random_residual(&rng, size);
+        ck_assert_double_gt(l1l2_shutter_mesh_set(&mesh, &map, &shape, &r, WIDTH, HEIGHT), 0.0);
+        for (int k = 0; k < mesh.columns * mesh.rows; k++)
+            if (!(fabs(mesh.node[k].x) <= 0.5 * WIDTH && fabs(mesh.node[k].y) <= 0.5 * HEIGHT))
+                ck_abort_msg("case %d: node %d is at %.9g, %.9g", i, k, mesh.node[k].x, mesh.node[k].y);
+    }
+    l1l2_warp_mesh_clear(&mesh);
+}
+END_TEST
+
+/* Where the residual reaches over the border more and more, all samples go as slowly as it does. */
+START_TEST(nothing_jumps_where_the_residual_reaches_the_border)
+{
+    const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.5 * WIDTH / diagonal_px,
+                                     0.5 * HEIGHT / diagonal_px};
+    const L1L2Mat map = l1l2_mat_mul(l1l2_mat_translation(31.0, 0.0), l1l2_mat_diagonal(0.9, 0.9));
+    L1L2WarpMesh mesh[2];
+    double farthest = 0.0, inside = 0.0;
+    ck_assert(l1l2_warp_mesh_init(&mesh[0], WIDTH, HEIGHT) && l1l2_warp_mesh_init(&mesh[1], WIDTH, HEIGHT));
+    for (int i = 0; i <= 200; i++) {
+        L1L2ShutterResidual r = {{0.0}};
+        for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
+            r.p[L1L2_SHUTTER_X + k] = -0.05 * i / diagonal_px; /* to the right, 0.05 px a step */
+        r.p[L1L2_SHUTTER_TILT] = 1e-9;
+        ck_assert_double_gt(l1l2_shutter_mesh_set(&mesh[i % 2], &map, &shape, &r, WIDTH, HEIGHT), 0.0);
+        for (int k = 0; i > 0 && k < mesh[0].columns * mesh[0].rows; k++) {
+            const double way = fabs(mesh[1].node[k].x - mesh[0].node[k].x);
+            farthest = fmax(farthest, way);
+            if (mesh[0].node[k].x < 0.0)
+                inside = fmax(inside, fabs(way - 0.05));
+        }
+    }
+    ck_assert_double_lt(farthest, 0.0501);
+    ck_assert_double_lt(inside, 1e-6);
+    l1l2_warp_mesh_clear(&mesh[0]);
+    l1l2_warp_mesh_clear(&mesh[1]);
+}
+END_TEST
+
+START_TEST(what_is_not_finite_is_no_mesh)
+{
+    const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, 0.4, 0.2};
+    const L1L2Mat map = l1l2_mat_identity();
+    L1L2ShutterResidual r = {{0.0}};
+    L1L2WarpMesh mesh;
+    ck_assert(l1l2_warp_mesh_init(&mesh, WIDTH, HEIGHT));
+    r.p[2] = NAN;
+    ck_assert_double_lt(l1l2_shutter_mesh_set(&mesh, &map, &shape, &r, WIDTH, HEIGHT), 0.0);
+    r.p[2] = 1e308;
+    ck_assert_double_lt(l1l2_shutter_mesh_set(&mesh, &map, &shape, &r, WIDTH, HEIGHT), 0.0);
+    l1l2_warp_mesh_clear(&mesh);
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("wobble");
+    TCase *tcase = tcase_create("wobble");
+    tcase_add_test(tcase, the_rows_own_skew_is_found_and_not_only_its_changes);
+    tcase_add_test(tcase, the_readout_is_found_whichever_way_it_runs);
+    tcase_add_test(tcase, frames_without_a_measured_residual_and_cuts_end_nothing);
+    tcase_add_test(tcase, what_explains_nothing_changes_nothing);
+    tcase_add_test(tcase, what_not_all_columns_tell_alike_or_the_camera_did_not_cause_changes_nothing);
+    tcase_add_test(tcase, a_fast_pan_leans_by_3_percent_at_most);
+    tcase_add_test(tcase, reset_is_as_new);
+    tcase_add_test(tcase, none_is_no_object_and_that_is_fine);
+    tcase_add_test(tcase, no_sample_is_outside_the_source_for_10000_paths_and_residuals);
+    tcase_add_test(tcase, nothing_jumps_where_the_residual_reaches_the_border);
+    tcase_add_test(tcase, what_is_not_finite_is_no_mesh);
+    tcase_set_timeout(tcase, 60);
+    suite_add_tcase(suite, tcase);
+    return checkx_run(suite);
+}

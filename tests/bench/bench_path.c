@@ -22,11 +22,11 @@ static double uniform(L1L2Rng *rng, double low, double high)
 static void describe(L1L2PathProblem *p, int count, uint64_t seed)
 {
     L1L2Rng rng = l1l2_rng_seeded(seed);
-    const L1L2PathCrop crop = l1l2_path_crop_make(640, 360, seed % 2 ? 0.8 : 0.9, p->dim);
+    const L1L2PathCropWindow crop = l1l2_path_crop_window(640, 360, seed % 2 ? 0.8 : 0.9, p->dim);
     const double shake = (double)(1 + seed % 5) * 0.003;
     p->count = count;
     p->history = 3;
-    for (int i = 0; i < L1L2_HISTORY; i++)
+    for (int i = 0; i < L1L2_PATH_HISTORY; i++)
         p->past[i][0] = 0.001 * (i - 3), p->past[i][2] = 0.5;
     for (int t = 0; t < count; t++) {
         const double roll = uniform(&rng, -shake, shake);
@@ -53,7 +53,7 @@ static void bench(const char *name, int dim, int count, L1L2StabSolver choice, i
     for (int i = 0; i < rounds; i++) {
         describe(p, count, (uint64_t)i);
         const int64_t start_ns = l1l2_clock_ns();
-        const L1L2SolverReport report = l1l2_path_solver_solve(solver, choice, p, q);
+        const L1L2PathSolverReport report = l1l2_path_solver_solve(solver, choice, p, q);
         ms[i] = 1e-6 * (double)(l1l2_clock_ns() - start_ns);
         converged += report.converged;
         first += report.osqp_iterations == 1;

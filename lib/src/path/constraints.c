@@ -7,16 +7,16 @@
 static const double min_zoom = 0.9, max_zoom = 1.1, max_turn = 0.1, max_skew = 0.05, max_stretch = 0.1;
 
 typedef struct Rows {
-    double G[L1L2_CROP_ROWS][L1L2_DIM], lo[L1L2_CROP_ROWS], hi[L1L2_CROP_ROWS];
+    double G[L1L2_PATH_CONSTRAINTS][L1L2_DIM], lo[L1L2_PATH_CONSTRAINTS], hi[L1L2_PATH_CONSTRAINTS];
 } Rows;
 
-L1L2PathCrop l1l2_path_crop_make(int width_px, int height_px, double ratio, int dim)
+L1L2PathCropWindow l1l2_path_crop_window(int width_px, int height_px, double ratio, int dim)
 {
     const double diagonal_px = hypot(width_px, height_px);
-    return (L1L2PathCrop){width_px / (2.0 * diagonal_px), height_px / (2.0 * diagonal_px), ratio, dim};
+    return (L1L2PathCropWindow){width_px / (2.0 * diagonal_px), height_px / (2.0 * diagonal_px), ratio, dim};
 }
 
-int l1l2_path_crop_row_count(int dim)
+int l1l2_path_constraint_count(int dim)
 {
     return dim == 2 ? 2 : dim == 4 ? 10 : 14;
 }
@@ -28,7 +28,7 @@ static void put(Rows *rows, int r, const double g[L1L2_DIM], double lo, double h
 }
 
 /* The rows on the parameters of B itself. Corners come with both signs, so rows are two-sided. */
-static void update_rows(const L1L2PathCrop *crop, Rows *rows)
+static void update_rows(const L1L2PathCropWindow *crop, Rows *rows)
 {
     if (crop->dim == 2) {
         const double room = 1.0 - crop->ratio;
@@ -55,8 +55,9 @@ static void update_rows(const L1L2PathCrop *crop, Rows *rows)
     put(rows, 13, (double[L1L2_DIM]){0.0, 0.0, 0.0, 0.0, 0.0, 4.0}, -max_skew, max_skew);
 }
 
-void l1l2_path_crop_rows(const L1L2PathCrop *crop, const L1L2Mat *camera, double G[L1L2_CROP_ROWS][L1L2_DIM],
-                    double lo[L1L2_CROP_ROWS], double hi[L1L2_CROP_ROWS])
+void l1l2_path_constraint_rows(const L1L2PathCropWindow *crop, const L1L2Mat *camera,
+                               double G[L1L2_PATH_CONSTRAINTS][L1L2_DIM], double lo[L1L2_PATH_CONSTRAINTS],
+                               double hi[L1L2_PATH_CONSTRAINTS])
 {
     Rows rows;
     L1L2Mat inverse;
@@ -68,7 +69,7 @@ void l1l2_path_crop_rows(const L1L2PathCrop *crop, const L1L2Mat *camera, double
         inverse.m[0] = inverse.m[4] = NAN; /* rows that no solver can meet, rather than wrong ones */
     l1l2_mat_to_q(&inverse, c);
     const double a = 2.0 * c[2], b = 2.0 * c[3], e = 2.0 * c[4], f = 2.0 * c[5];
-    for (int r = 0; r < l1l2_path_crop_row_count(crop->dim); r++) {
+    for (int r = 0; r < l1l2_path_constraint_count(crop->dim); r++) {
         const double *g = rows.G[r];
         const double moved[L1L2_DIM] = {
             (a + e) * g[0] + (b + f) * g[1],
@@ -85,7 +86,7 @@ void l1l2_path_crop_rows(const L1L2PathCrop *crop, const L1L2Mat *camera, double
     }
 }
 
-static double row_value(const L1L2PathCrop *crop, const double g[L1L2_DIM], const L1L2Mat *B)
+static double row_value(const L1L2PathCropWindow *crop, const double g[L1L2_DIM], const L1L2Mat *B)
 {
     double q[L1L2_DIM], value = 0.0;
     l1l2_mat_to_q(B, q);
@@ -94,19 +95,19 @@ static double row_value(const L1L2PathCrop *crop, const double g[L1L2_DIM], cons
     return value;
 }
 
-double l1l2_path_crop_excess(const L1L2PathCrop *crop, const L1L2Mat *B)
+double l1l2_path_constraint_excess(const L1L2PathCropWindow *crop, const L1L2Mat *B)
 {
     Rows rows;
     double worst = -HUGE_VAL;
     update_rows(crop, &rows);
-    for (int r = 0; r < l1l2_path_crop_row_count(crop->dim); r++) {
+    for (int r = 0; r < l1l2_path_constraint_count(crop->dim); r++) {
         const double value = row_value(crop, rows.G[r], B);
         worst = fmax(worst, fmax(value - rows.hi[r], rows.lo[r] - value));
     }
     return worst;
 }
 
-L1L2Mat l1l2_path_crop_admit(const L1L2PathCrop *crop, const L1L2Mat *B)
+L1L2Mat l1l2_path_constraint_shrink(const L1L2PathCropWindow *crop, const L1L2Mat *B)
 {
     const L1L2Mat identity = l1l2_mat_identity();
     if (!l1l2_mat_is_finite(B))
@@ -114,7 +115,7 @@ L1L2Mat l1l2_path_crop_admit(const L1L2PathCrop *crop, const L1L2Mat *B)
     Rows rows;
     double keep = 1.0;
     update_rows(crop, &rows);
-    for (int r = 0; r < l1l2_path_crop_row_count(crop->dim); r++) {
+    for (int r = 0; r < l1l2_path_constraint_count(crop->dim); r++) {
         const double at_identity = row_value(crop, rows.G[r], &identity), value = row_value(crop, rows.G[r], B);
         if (value > rows.hi[r])
             keep = fmin(keep, (rows.hi[r] - at_identity) / (value - at_identity));

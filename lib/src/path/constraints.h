@@ -15,29 +15,30 @@
 
 #include "common/geom.h"
 
-#define L1L2_CROP_ROWS 14 /* at most */
+#define L1L2_PATH_CONSTRAINTS 14 /* at most */
 
-typedef struct L1L2PathCrop {
+typedef struct L1L2PathCropWindow {
     double half_w, half_h; /* of the frame, diagonals */
     double ratio;          /* kept part of each side, (0, 1) */
     int dim;               /* of the motion model: 2, 4 or 6 parameters, see geom.h */
-} L1L2PathCrop;
+} L1L2PathCropWindow;
 
-L1L2PathCrop l1l2_path_crop_make(int width_px, int height_px, double ratio, int dim);
+L1L2PathCropWindow l1l2_path_crop_window(int width_px, int height_px, double ratio, int dim);
 
 /* Rows for a motion model of `dim` parameters. */
-int l1l2_path_crop_row_count(int dim);
+int l1l2_path_constraint_count(int dim);
 
 /* The rows as lo <= G q <= hi on the parameters q of P = camera B, in the frame of reference of `camera`.
  * camera: a C_t of the motion model. What is beyond its row count and parameters is not written to. */
-void l1l2_path_crop_rows(const L1L2PathCrop *crop, const L1L2Mat *camera, double G[L1L2_CROP_ROWS][L1L2_DIM],
-                    double lo[L1L2_CROP_ROWS], double hi[L1L2_CROP_ROWS]);
+void l1l2_path_constraint_rows(const L1L2PathCropWindow *crop, const L1L2Mat *camera,
+                               double G[L1L2_PATH_CONSTRAINTS][L1L2_DIM], double lo[L1L2_PATH_CONSTRAINTS],
+                               double hi[L1L2_PATH_CONSTRAINTS]);
 
 /* How far B, of the motion model, breaks its worst row: <= 0 where all hold. Diagonals for inclusion, plain numbers
  * for proximity. */
-double l1l2_path_crop_excess(const L1L2PathCrop *crop, const L1L2Mat *B);
+double l1l2_path_constraint_excess(const L1L2PathCropWindow *crop, const L1L2Mat *B);
 
 /* The transform nearest to B on the straight way to the identity that satisfies every row. */
-L1L2Mat l1l2_path_crop_admit(const L1L2PathCrop *crop, const L1L2Mat *B);
+L1L2Mat l1l2_path_constraint_shrink(const L1L2PathCropWindow *crop, const L1L2Mat *B);
 
 #endif

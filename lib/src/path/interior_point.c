@@ -23,7 +23,7 @@ typedef struct Pair {
 
 /* d: components of q. */
 struct L1L2PathInteriorPoint {
-    Pair *term, *crop;      /* by l1l2_term_index(); by rows t + r */
+    Pair *term, *crop;      /* by l1l2_path_term_index(); by rows t + r */
     double *band;           /* d n columns of band_of(d): the system, then its factors */
     double *rhs;            /* d n: right-hand side, then the step in q */
     double *gradient;       /* d n: stationarity in q at the iterate */
@@ -31,24 +31,24 @@ struct L1L2PathInteriorPoint {
     double (*q)[L1L2_DIM], (*best_q)[L1L2_DIM];
     double *slack;
     double (*term_dual)[2];
-    double (*crop_dual)[L1L2_CROP_ROWS];
+    double (*constraint_dual)[L1L2_PATH_CONSTRAINTS];
     int terms, crops;       /* pairs in use */
 };
 
 /* The diagonal and what is below it: a third difference reaches three frames. */
 L1L2_PATH_INLINE int band_of(const int dim)
 {
-    return dim * (L1L2_HISTORY + 1);
+    return dim * (L1L2_PATH_HISTORY + 1);
 }
 
 L1L2PathInteriorPoint *l1l2_path_interior_point_create(int capacity, int dim)
 {
-    const size_t n = (size_t)capacity, size = n * (size_t)dim, terms = size * L1L2_ORDERS;
+    const size_t n = (size_t)capacity, size = n * (size_t)dim, terms = size * L1L2_PATH_ORDERS;
     L1L2PathInteriorPoint *ipm = l1l2_mem_new(1, sizeof *ipm);
     if (!ipm)
         return NULL;
     ipm->term = l1l2_mem_new(terms, sizeof *ipm->term);
-    ipm->crop = l1l2_mem_new(n * (size_t)l1l2_path_crop_row_count(dim), sizeof *ipm->crop);
+    ipm->crop = l1l2_mem_new(n * (size_t)l1l2_path_constraint_count(dim), sizeof *ipm->crop);
     ipm->band = l1l2_mem_new(size, (size_t)band_of(dim) * sizeof *ipm->band);
     ipm->rhs = l1l2_mem_new(size, sizeof *ipm->rhs);
     ipm->gradient = l1l2_mem_new(size, sizeof *ipm->gradient);
@@ -57,9 +57,9 @@ L1L2PathInteriorPoint *l1l2_path_interior_point_create(int capacity, int dim)
     ipm->best_q = l1l2_mem_new(n, sizeof *ipm->best_q);
     ipm->slack = l1l2_mem_new(terms, sizeof *ipm->slack);
     ipm->term_dual = l1l2_mem_new(terms, sizeof *ipm->term_dual);
-    ipm->crop_dual = l1l2_mem_new(n, sizeof *ipm->crop_dual);
+    ipm->constraint_dual = l1l2_mem_new(n, sizeof *ipm->constraint_dual);
     if (ipm->term && ipm->crop && ipm->band && ipm->rhs && ipm->gradient && ipm->diagonal && ipm->q && ipm->best_q &&
-        ipm->slack && ipm->term_dual && ipm->crop_dual)
+        ipm->slack && ipm->term_dual && ipm->constraint_dual)
         return ipm;
     l1l2_path_interior_point_free(ipm);
     return NULL;
@@ -79,7 +79,7 @@ void l1l2_path_interior_point_free(L1L2PathInteriorPoint *ipm)
     l1l2_mem_free(ipm->best_q);
     l1l2_mem_free(ipm->slack);
     l1l2_mem_free(ipm->term_dual);
-    l1l2_mem_free(ipm->crop_dual);
+    l1l2_mem_free(ipm->constraint_dual);
     l1l2_mem_free(ipm);
 }
 
@@ -89,11 +89,11 @@ L1L2_PATH_INLINE void start(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p
 {
     const int n = p->count;
     memcpy(ipm->q, p->camera, (size_t)n * sizeof *ipm->q);
-    ipm->terms = l1l2_term_components(p);
+    ipm->terms = l1l2_path_term_components(p);
     ipm->crops = p->rows * n;
     Pair *pair = ipm->term;
-    for (int order = 1; order <= L1L2_ORDERS; order++)
-        for (int t = l1l2_terms_first(order, p->history); t < n; t++)
+    for (int order = 1; order <= L1L2_PATH_ORDERS; order++)
+        for (int t = l1l2_path_first_term(order, p->history); t < n; t++)
             for (int j = 0; j < dim; j++, pair++) {
                 const double v = l1l2_path_difference(p, (const double(*)[L1L2_DIM])ipm->q, order, t, j);
                 *pair = (Pair){.dv = 0.0}; /* a step that gave out is not carried into the next window */
@@ -121,12 +121,12 @@ L1L2_PATH_INLINE void add_gradients(const L1L2PathInteriorPoint *ipm, const L1L2
                                     double *rhs, const int dim)
 {
     const Pair *pair = ipm->term;
-    for (int order = 1; order <= L1L2_ORDERS; order++)
-        for (int t = l1l2_terms_first(order, p->history); t < p->count; t++)
+    for (int order = 1; order <= L1L2_PATH_ORDERS; order++)
+        for (int t = l1l2_path_first_term(order, p->history); t < p->count; t++)
             for (int j = 0; j < dim; j++, pair++) {
                 const double v = term_value(pair);
                 for (int m = 0; m <= order && m <= t; m++)
-                    rhs[dim * (t - m) + j] += v * l1l2_difference[order - 1][m];
+                    rhs[dim * (t - m) + j] += v * l1l2_path_difference_coefficients[order - 1][m];
             }
     pair = ipm->crop;
     for (int t = 0; t < p->count; t++)
@@ -171,12 +171,12 @@ L1L2_PATH_INLINE void assemble(L1L2PathInteriorPoint *ipm, const L1L2PathProblem
         for (int j = 0; j < dim; j++)
             system[(dim * t + j) * band] = 2.0 * p->lambda[t];
     const Pair *pair = ipm->term;
-    for (int order = 1; order <= L1L2_ORDERS; order++)
-        for (int t = l1l2_terms_first(order, p->history); t < n; t++)
+    for (int order = 1; order <= L1L2_PATH_ORDERS; order++)
+        for (int t = l1l2_path_first_term(order, p->history); t < n; t++)
             for (int j = 0; j < dim; j++, pair++) {
                 const double d0 = pair->y[0] / pair->s[0], d1 = pair->y[1] / pair->s[1];
                 const double weight = 4.0 * d0 * d1 / (d0 + d1);
-                const double *c = l1l2_difference[order - 1];
+                const double *c = l1l2_path_difference_coefficients[order - 1];
                 for (int a = 0; a <= order && a <= t; a++)     /* frame t - a, the earlier one, is the column */
                     for (int b = 0; b <= a; b++)
                         system[(dim * (t - a) + j) * band + dim * (a - b)] += weight * c[a] * c[b];
@@ -239,12 +239,12 @@ L1L2_PATH_INLINE void step_forms(L1L2PathInteriorPoint *ipm, const L1L2PathProbl
 {
     const double *step = ipm->rhs;
     Pair *pair = ipm->term;
-    for (int order = 1; order <= L1L2_ORDERS; order++)
-        for (int t = l1l2_terms_first(order, p->history); t < p->count; t++)
+    for (int order = 1; order <= L1L2_PATH_ORDERS; order++)
+        for (int t = l1l2_path_first_term(order, p->history); t < p->count; t++)
             for (int j = 0; j < dim; j++, pair++) {
                 pair->dv = 0.0;
                 for (int m = 0; m <= order && m <= t; m++)
-                    pair->dv += l1l2_difference[order - 1][m] * step[dim * (t - m) + j];
+                    pair->dv += l1l2_path_difference_coefficients[order - 1][m] * step[dim * (t - m) + j];
             }
     pair = ipm->crop;
     for (int t = 0; t < p->count; t++)
@@ -341,7 +341,7 @@ static void keep(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p)
         ipm->term_dual[i][1] = ipm->term[i].y[1];
     }
     for (int i = 0; i < ipm->crops; i++)
-        ipm->crop_dual[i / p->rows][i % p->rows] = ipm->crop[i].y[0] - ipm->crop[i].y[1];
+        ipm->constraint_dual[i / p->rows][i % p->rows] = ipm->crop[i].y[0] - ipm->crop[i].y[1];
 }
 
 L1L2_PATH_INLINE L1L2PathInteriorPointReport solve(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, const int dim)
@@ -371,7 +371,7 @@ L1L2PathInteriorPointReport l1l2_path_interior_point_solve(L1L2PathInteriorPoint
     L1L2PathInteriorPointReport best = p->dim == 2   ? solve(ipm, p, 2)
                                        : p->dim == 4 ? solve(ipm, p, 4)
                                                      : solve(ipm, p, 6);
-    *point = (L1L2PathPoint){ipm->best_q, ipm->slack, ipm->term_dual, ipm->crop_dual};
+    *point = (L1L2PathPoint){ipm->best_q, ipm->slack, ipm->term_dual, ipm->constraint_dual};
     const double objective = l1l2_path_objective(p, (const double(*)[L1L2_DIM])point->q);
     best.converged = best.bound <= enough_absolute + enough_relative * objective;
     return best;

@@ -19,7 +19,7 @@ typedef struct Slot {
 struct L1L2Path {
     L1L2PathConfig cfg;
     double crop_ratio; /* of the frame pushed last, on the way to cfg's */
-    L1L2PathSchedule plan;
+    L1L2PathSchedule schedule;
     Slot *slots;      /* frame t is at t modulo capacity */
     int capacity;     /* window + the three frames that a window looks back on */
     int64_t start;    /* frame with which the current path starts */
@@ -42,7 +42,7 @@ L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg)
         return L1L2STAB_ERR_NOMEM;
     const int dim = l1l2_mat_dim(cfg->model);
     path->cfg = *cfg;
-    path->capacity = cfg->window + L1L2_HISTORY + 1;
+    path->capacity = cfg->window + L1L2_PATH_HISTORY + 1;
     path->slots = l1l2_mem_new((size_t)path->capacity, sizeof *path->slots);
     path->problem = l1l2_path_problem_create(cfg->window, dim);
     path->solver = l1l2_path_solver_create(cfg->window, dim);
@@ -71,7 +71,7 @@ void l1l2_path_free(L1L2Path *path)
 void l1l2_path_reset(L1L2Path *path)
 {
     path->start = path->pushed = path->decided = path->pulled = 0;
-    path->plan = l1l2_path_schedule_start(path->cfg.window, path->cfg.overlap);
+    path->schedule = l1l2_path_schedule_start(path->cfg.window, path->cfg.overlap);
     path->crop_ratio = path->cfg.crop_ratio;
 }
 
@@ -85,9 +85,9 @@ void l1l2_path_set_crop_ratio(L1L2Path *path, double crop_ratio)
     path->cfg.crop_ratio = crop_ratio;
 }
 
-static L1L2PathCrop crop_of(const L1L2Path *path, const L1L2PathFrame *frame)
+static L1L2PathCropWindow crop_of(const L1L2Path *path, const L1L2PathFrame *frame)
 {
-    return l1l2_path_crop_make(path->cfg.width, path->cfg.height, frame->crop_ratio, path->problem->dim);
+    return l1l2_path_crop_window(path->cfg.width, path->cfg.height, frame->crop_ratio, path->problem->dim);
 }
 
 /* The frames of a window that are averaged with the window before it. Where there are none the join is continuous. */
@@ -106,7 +106,7 @@ static void describe_window(L1L2Path *path, const L1L2PathWindow *step)
     p->count = step->count;
     for (int t = 0; t < step->count; t++) {
         const L1L2PathFrame *frame = &slot(path, first + t)->frame;
-        const L1L2PathCrop crop = crop_of(path, frame);
+        const L1L2PathCropWindow crop = crop_of(path, frame);
         if (t > 0)
             camera = l1l2_mat_mul(camera, frame->F);
         l1l2_path_problem_set(p, t, &camera, frame->lambda * 30.0 / rate, &crop);
@@ -115,12 +115,12 @@ static void describe_window(L1L2Path *path, const L1L2PathWindow *step)
     if (blended(path, step) > 0)
         return;
     camera = l1l2_mat_identity();
-    for (int back = 1; back <= L1L2_HISTORY && back <= step->first; back++) {
+    for (int back = 1; back <= L1L2_PATH_HISTORY && back <= step->first; back++) {
         L1L2Mat inverse;
         l1l2_mat_inverse(slot(path, first - back + 1)->frame.F, &inverse);
         camera = l1l2_mat_mul(camera, inverse);
         const L1L2Mat smooth = l1l2_mat_mul(camera, slot(path, first - back)->frame.B);
-        l1l2_mat_to_q(&smooth, p->past[L1L2_HISTORY - back]);
+        l1l2_mat_to_q(&smooth, p->past[L1L2_PATH_HISTORY - back]);
         p->history = back;
     }
 }
@@ -138,11 +138,11 @@ static void hold_course(L1L2Path *path, const L1L2PathWindow *step)
     for (int t = 0; t < step->count; t++) {
         if (step->first + t > 0) {
             const L1L2PathFrame *frame = &slot(path, first + t)->frame;
-            const L1L2PathCrop crop = crop_of(path, frame);
+            const L1L2PathCropWindow crop = crop_of(path, frame);
             L1L2Mat inverse; /* P_t = P_{t-1} S, so B_t = F_t^-1 B_{t-1} S */
             l1l2_mat_inverse(frame->F, &inverse);
             B = l1l2_mat_mul(l1l2_mat_mul(inverse, B), l1l2_mat_translation(speed_x, speed_y));
-            B = l1l2_path_crop_admit(&crop, &B);
+            B = l1l2_path_constraint_shrink(&crop, &B);
         }
         speed_x *= fade, speed_y *= fade;
         slot(path, first + t)->next_B = B;
@@ -157,11 +157,11 @@ static void update_transforms(L1L2Path *path, const L1L2PathWindow *step)
         const L1L2Mat camera = l1l2_mat_from_q(p->camera[t], p->dim);
         const L1L2Mat smooth = l1l2_mat_from_q(path->solution[t], p->dim);
         Slot *s = slot(path, path->start + step->first + t);
-        const L1L2PathCrop crop = crop_of(path, &s->frame);
+        const L1L2PathCropWindow crop = crop_of(path, &s->frame);
         L1L2Mat inverse;
         l1l2_mat_inverse(camera, &inverse);
         const L1L2Mat B = l1l2_mat_mul(inverse, smooth);
-        s->next_B = l1l2_path_crop_admit(&crop, &B);
+        s->next_B = l1l2_path_constraint_shrink(&crop, &B);
     }
 }
 
@@ -175,10 +175,10 @@ static L1L2Mat blend(const L1L2Mat *old_B, const L1L2Mat *new_B, int i, int over
     return B;
 }
 
-static void decide(L1L2Path *path, const L1L2PathWindow *step, const L1L2SolverReport *report)
+static void decide(L1L2Path *path, const L1L2PathWindow *step, const L1L2PathSolverReport *report)
 {
     const int shared = blended(path, step);
-    for (int t = 0; t < step->give; t++) {
+    for (int t = 0; t < step->emit; t++) {
         const int64_t frame = path->start + step->first + t;
         L1L2PathFrame *f = &slot(path, frame)->frame;
         f->B = t < shared ? blend(&f->B, &slot(path, frame)->next_B, t + 1, shared) : slot(path, frame)->next_B;
@@ -192,11 +192,11 @@ static void decide(L1L2Path *path, const L1L2PathWindow *step, const L1L2SolverR
         f->fallback = !report->converged;
         f->report = *report;
     }
-    for (int t = step->give; t < step->count; t++) {
+    for (int t = step->emit; t < step->count; t++) {
         Slot *s = slot(path, path->start + step->first + t);
         s->frame.B = s->next_B; /* what the next window blends with */
     }
-    path->decided = path->start + step->first + step->give;
+    path->decided = path->start + step->first + step->emit;
 }
 
 /* AUTO: OSQP's check costs about as much as the solve. Spread over a window's frames that is nothing; where windows
@@ -206,7 +206,7 @@ static L1L2StabSolver choose_solver(const L1L2Path *path, const L1L2PathWindow *
     const int few_frames = 8;
     if (path->cfg.solver != L1L2STAB_SOLVER_AUTO)
         return path->cfg.solver;
-    return step->give >= few_frames ? L1L2STAB_SOLVER_CHECKED : L1L2STAB_SOLVER_PREDICTOR;
+    return step->emit >= few_frames ? L1L2STAB_SOLVER_CHECKED : L1L2STAB_SOLVER_PREDICTOR;
 }
 
 /* A point that is not the optimum is taken where it is near enough that nobody could tell; else the course is held. */
@@ -214,7 +214,7 @@ static void solve_window(L1L2Path *path, const L1L2PathWindow *step)
 {
     const double near_enough = 1e-4;
     describe_window(path, step);
-    const L1L2SolverReport report =
+    const L1L2PathSolverReport report =
         l1l2_path_solver_solve(path->solver, choose_solver(path, step), path->problem, path->solution);
     const bool usable = report.converged || report.bound <= near_enough;
     if (usable)
@@ -232,7 +232,7 @@ static void solve_window(L1L2Path *path, const L1L2PathWindow *step)
 static void advance(L1L2Path *path, bool ended)
 {
     L1L2PathWindow step;
-    while (l1l2_path_schedule_next(&path->plan, path->pushed - path->start, ended, &step))
+    while (l1l2_path_schedule_next(&path->schedule, path->pushed - path->start, ended, &step))
         solve_window(path, &step);
 }
 
@@ -243,7 +243,7 @@ void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path)
     if (starts_path) {
         advance(path, true);
         path->start = path->pushed;
-        path->plan = l1l2_path_schedule_start(path->cfg.window, path->cfg.overlap);
+        path->schedule = l1l2_path_schedule_start(path->cfg.window, path->cfg.overlap);
     }
     const double zoom = path->cfg.crop_ratio - path->crop_ratio;
     if (starts_path || fabs(zoom) <= L1L2_CROP_STEP)
@@ -269,7 +269,7 @@ void l1l2_path_hurry(L1L2Path *path, int frames)
 {
     const int64_t undecided = path->pulled + frames - path->decided;
     L1L2PathWindow step;
-    if (l1l2_path_schedule_early(&path->plan, path->pushed - path->start, undecided, &step))
+    if (l1l2_path_schedule_early(&path->schedule, path->pushed - path->start, undecided, &step))
         solve_window(path, &step);
 }
 

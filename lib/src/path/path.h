@@ -4,13 +4,14 @@
  *
  * Numbers only, no pixels. Unit: the frame's diagonal. All maps are of one motion model: with translations the picture
  * is moved, never turned or zoomed. A path is the frames from one cut to the next; windows, joins and ends are those of
- * plan.h. C_t is taken relative to each window's first frame, so numbers stay near 1 however long the video is.
+ * window_schedule.h. C_t is taken relative to each window's first frame, so numbers stay near 1 however long the
+ * video is.
  *
  * Joins (paper, section 4.1)
  *   continuous  the differences of a window reach back over the last three frames given out before it, as constants.
  *   blend       eq. (8) on the K shared frames. As printed, v_i = i/K weighs the OLD window: it would jump at both
  *               ends. The weights run the other way here: old 1 - i/(K+1), new i/(K+1), i = 1..K.
- * Around an early window (plan.h) every join is a continuous one.
+ * Around an early window (window_schedule.h) every join is a continuous one.
  */
 #ifndef L1L2_PATH_PATH_H
 #define L1L2_PATH_PATH_H
@@ -45,7 +46,7 @@ typedef struct L1L2PathFrame {
     double lambda, crop_ratio; /* as they were when the frame was pushed */
     bool early;          /* decided by an early window, with a shorter look-ahead */
     bool fallback;       /* no solver arrived: the path is feasible and continuous, but not the optimum */
-    L1L2SolverReport report; /* of the frame's window */
+    L1L2PathSolverReport report; /* of the frame's window */
 } L1L2PathFrame;
 
 /* On error *out is NULL. cfg->log must outlive the object. */

@@ -6,7 +6,8 @@
 
 #include "common/mem.h"
 
-const double l1l2_difference[L1L2_ORDERS][L1L2_HISTORY + 1] = {{1, -1, 0, 0}, {1, -2, 1, 0}, {1, -3, 3, -1}};
+const double l1l2_path_difference_coefficients[L1L2_PATH_ORDERS][L1L2_PATH_HISTORY + 1] = {
+    {1, -1, 0, 0}, {1, -2, 1, 0}, {1, -3, 3, -1}};
 
 L1L2PathProblem *l1l2_path_problem_create(int capacity, int dim)
 {
@@ -15,7 +16,7 @@ L1L2PathProblem *l1l2_path_problem_create(int capacity, int dim)
     if (!p)
         return NULL;
     p->dim = dim;
-    p->rows = l1l2_path_crop_row_count(dim);
+    p->rows = l1l2_path_constraint_count(dim);
     p->weight[0] = p->weight[1] = p->weight[2] = 1.0;
     p->camera = l1l2_mem_new(n, sizeof *p->camera);
     p->lambda = l1l2_mem_new(n, sizeof *p->lambda);
@@ -40,27 +41,29 @@ void l1l2_path_problem_free(L1L2PathProblem *p)
     l1l2_mem_free(p);
 }
 
-void l1l2_path_problem_set(L1L2PathProblem *p, int t, const L1L2Mat *camera, double lambda, const L1L2PathCrop *crop)
+void l1l2_path_problem_set(L1L2PathProblem *p, int t, const L1L2Mat *camera, double lambda,
+                           const L1L2PathCropWindow *crop)
 {
     assert(crop->dim == p->dim);
     l1l2_mat_to_q(camera, p->camera[t]);
     p->lambda[t] = lambda;
-    l1l2_path_crop_rows(crop, camera, p->G[t], p->lo[t], p->hi[t]);
+    l1l2_path_constraint_rows(crop, camera, p->G[t], p->lo[t], p->hi[t]);
 }
 
 double l1l2_path_difference(const L1L2PathProblem *p, const double (*q)[L1L2_DIM], int order, int t, int j)
 {
     double sum = 0.0;
     for (int m = 0; m <= order; m++)
-        sum += l1l2_difference[order - 1][m] * (t - m >= 0 ? q[t - m][j] : p->past[L1L2_HISTORY + t - m][j]);
+        sum += l1l2_path_difference_coefficients[order - 1][m] *
+               (t - m >= 0 ? q[t - m][j] : p->past[L1L2_PATH_HISTORY + t - m][j]);
     return sum;
 }
 
 double l1l2_path_objective(const L1L2PathProblem *p, const double (*q)[L1L2_DIM])
 {
     double sum = 0.0;
-    for (int order = 1; order <= L1L2_ORDERS; order++)
-        for (int t = l1l2_terms_first(order, p->history); t < p->count; t++)
+    for (int order = 1; order <= L1L2_PATH_ORDERS; order++)
+        for (int t = l1l2_path_first_term(order, p->history); t < p->count; t++)
             for (int j = 0; j < p->dim; j++)
                 sum += p->weight[order - 1] * fabs(l1l2_path_difference(p, q, order, t, j));
     for (int t = 0; t < p->count; t++)
@@ -82,25 +85,25 @@ double l1l2_path_excess(const L1L2PathProblem *p, const double (*q)[L1L2_DIM])
     return worst;
 }
 
-int l1l2_terms_first(int order, int history)
+int l1l2_path_first_term(int order, int history)
 {
     return order > history ? order - history : 0;
 }
 
-int l1l2_terms(int order, int count, int history)
+int l1l2_path_terms(int order, int count, int history)
 {
-    const int terms = count - l1l2_terms_first(order, history);
+    const int terms = count - l1l2_path_first_term(order, history);
     return terms > 0 ? terms : 0;
 }
 
-int l1l2_term_index(const L1L2PathProblem *p, int order, int term, int component)
+int l1l2_path_term_index(const L1L2PathProblem *p, int order, int term, int component)
 {
     for (int below = 1; below < order; below++)
-        term += l1l2_terms(below, p->count, p->history);
+        term += l1l2_path_terms(below, p->count, p->history);
     return p->dim * term + component;
 }
 
-int l1l2_term_components(const L1L2PathProblem *p)
+int l1l2_path_term_components(const L1L2PathProblem *p)
 {
-    return l1l2_term_index(p, L1L2_ORDERS + 1, 0, 0);
+    return l1l2_path_term_index(p, L1L2_PATH_ORDERS + 1, 0, 0);
 }

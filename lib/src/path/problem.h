@@ -20,34 +20,34 @@
 
 #include "path/constraints.h"
 
-#define L1L2_ORDERS 3  /* of differences */
-#define L1L2_HISTORY 3 /* frames that the third difference reaches back */
+#define L1L2_PATH_ORDERS 3  /* of differences */
+#define L1L2_PATH_HISTORY 3 /* frames that the third difference reaches back */
 
 typedef struct L1L2PathProblem {
     int dim;     /* components of q_t that are used: 2, 4 or 6 */
-    int rows;    /* of G_t that are used: l1l2_path_crop_row_count(dim) */
+    int rows;    /* of G_t that are used: l1l2_path_constraint_count(dim) */
     int count;   /* n, frames, >= 1 */
     int history; /* frames of `past` that exist, 0..3 */
-    double past[L1L2_HISTORY][L1L2_DIM];   /* q of the frames before the window, newest last: past[2] is frame -1 */
-    double weight[L1L2_ORDERS];            /* w_k, > 0 */
+    double past[L1L2_PATH_HISTORY][L1L2_DIM]; /* q of the frames before the window, newest last: [2] is frame -1 */
+    double weight[L1L2_PATH_ORDERS];            /* w_k, > 0 */
     double (*camera)[L1L2_DIM];            /* n: c_t */
     double *lambda;                        /* n: lambda_t, >= 0 */
-    double (*G)[L1L2_CROP_ROWS][L1L2_DIM]; /* n */
-    double (*lo)[L1L2_CROP_ROWS];          /* n */
-    double (*hi)[L1L2_CROP_ROWS];          /* n */
+    double (*G)[L1L2_PATH_CONSTRAINTS][L1L2_DIM]; /* n */
+    double (*lo)[L1L2_PATH_CONSTRAINTS];          /* n */
+    double (*hi)[L1L2_PATH_CONSTRAINTS];          /* n */
 } L1L2PathProblem;
 
 /* A point with its duals. Term components are counted order by order: component j of term i of order k is number
- * dim (terms of the orders below k + i) + j; see l1l2_term_index(). */
+ * dim (terms of the orders below k + i) + j; see l1l2_path_term_index(). */
 typedef struct L1L2PathPoint {
     double (*q)[L1L2_DIM];              /* n */
     double *slack;                      /* term components: e >= |D^k q| */
     double (*term_dual)[2];             /* term components: of D^k q <= e and of -D^k q <= e, >= 0 */
-    double (*crop_dual)[L1L2_CROP_ROWS]; /* n: of G q <= hi less that of G q >= lo */
+    double (*constraint_dual)[L1L2_PATH_CONSTRAINTS]; /* n: of G q <= hi less that of G q >= lo */
 } L1L2PathPoint;
 
-/* Coefficients of the backward differences: D^k q_t = sum_m l1l2_difference[k-1][m] q_{t-m}. */
-extern const double l1l2_difference[L1L2_ORDERS][L1L2_HISTORY + 1];
+/* Coefficients of the backward differences: D^k q_t = sum_m l1l2_path_difference_coefficients[k-1][m] q_{t-m}. */
+extern const double l1l2_path_difference_coefficients[L1L2_PATH_ORDERS][L1L2_PATH_HISTORY + 1];
 
 /* Arrays for up to `capacity` frames of a motion model of `dim` parameters; weights 1, the rest 0. NULL when out of
  * memory. */
@@ -55,14 +55,15 @@ L1L2PathProblem *l1l2_path_problem_create(int capacity, int dim);
 void l1l2_path_problem_free(L1L2PathProblem *p);
 
 /* Fills in frame t, whose camera path (of the motion model, as is `crop`) is `camera`. */
-void l1l2_path_problem_set(L1L2PathProblem *p, int t, const L1L2Mat *camera, double lambda, const L1L2PathCrop *crop);
+void l1l2_path_problem_set(L1L2PathProblem *p, int t, const L1L2Mat *camera, double lambda,
+                           const L1L2PathCropWindow *crop);
 
 /* Frame of an order's first term, and how many terms it has. order: 1, 2, 3. */
-int l1l2_terms_first(int order, int history);
-int l1l2_terms(int order, int count, int history);
-int l1l2_term_index(const L1L2PathProblem *p, int order, int term, int component);
+int l1l2_path_first_term(int order, int history);
+int l1l2_path_terms(int order, int count, int history);
+int l1l2_path_term_index(const L1L2PathProblem *p, int order, int term, int component);
 /* Components of all terms. */
-int l1l2_term_components(const L1L2PathProblem *p);
+int l1l2_path_term_components(const L1L2PathProblem *p);
 
 /* D^order q at frame t, component j; q: n rows. */
 double l1l2_path_difference(const L1L2PathProblem *p, const double (*q)[L1L2_DIM], int order, int t, int j);

@@ -5,105 +5,105 @@
 
 /* Hand-made equilibration in place of the solver's own, which measured worse: rows are multiplied by these, the slacks
  * of a difference with them. */
-static const double term_scale[L1L2_ORDERS] = {20.0, 50.0, 200.0};
+static const double term_scale[L1L2_PATH_ORDERS] = {20.0, 50.0, 200.0};
 static const double crop_scale = 3.0;
 
-int l1l2_col_q(const L1L2PathProblem *p, int frame, int component)
+int l1l2_path_qp_col_q(const L1L2PathProblem *p, int frame, int component)
 {
     return p->dim * frame + component;
 }
 
-int l1l2_col_slack(const L1L2PathProblem *p, int order, int term, int component)
+int l1l2_path_qp_col_slack(const L1L2PathProblem *p, int order, int term, int component)
 {
-    return p->dim * p->count + l1l2_term_index(p, order, term, component);
+    return p->dim * p->count + l1l2_path_term_index(p, order, term, component);
 }
 
-int l1l2_row_term(const L1L2PathProblem *p, int order, int term, int component, int side)
+int l1l2_path_qp_row_term(const L1L2PathProblem *p, int order, int term, int component, int side)
 {
-    return 2 * l1l2_term_index(p, order, term, component) + side;
+    return 2 * l1l2_path_term_index(p, order, term, component) + side;
 }
 
-int l1l2_row_crop(const L1L2PathProblem *p, int frame, int row)
+int l1l2_path_qp_row_constraint(const L1L2PathProblem *p, int frame, int row)
 {
-    return 2 * l1l2_term_components(p) + p->rows * frame + row;
+    return 2 * l1l2_path_term_components(p) + p->rows * frame + row;
 }
 
-int l1l2_cols(const L1L2PathProblem *p)
+int l1l2_path_qp_cols(const L1L2PathProblem *p)
 {
-    return p->dim * p->count + l1l2_term_components(p);
+    return p->dim * p->count + l1l2_path_term_components(p);
 }
 
-int l1l2_rows(const L1L2PathProblem *p)
+int l1l2_path_qp_rows(const L1L2PathProblem *p)
 {
-    return l1l2_row_crop(p, p->count, 0);
+    return l1l2_path_qp_row_constraint(p, p->count, 0);
 }
 
-L1L2Qp *l1l2_path_qp_create(int capacity, int dim)
+L1L2PathQp *l1l2_path_problem_as_qp_create(int capacity, int dim)
 {
     const L1L2PathProblem largest = {
-        .dim = dim, .rows = l1l2_path_crop_row_count(dim), .count = capacity, .history = L1L2_HISTORY};
+        .dim = dim, .rows = l1l2_path_constraint_count(dim), .count = capacity, .history = L1L2_PATH_HISTORY};
     /* A component of q stands in 2 (2 + 3 + 4) rows of differences and in the crop rows; a slack in two rows. */
-    return l1l2_qp_create(l1l2_cols(&largest), l1l2_rows(&largest),
-                          dim * capacity * (18 + largest.rows) + 2 * l1l2_term_components(&largest));
+    return l1l2_path_qp_create(l1l2_path_qp_cols(&largest), l1l2_path_qp_rows(&largest),
+                          dim * capacity * (18 + largest.rows) + 2 * l1l2_path_term_components(&largest));
 }
 
-static void put(L1L2Qp *qp, int row, double value)
+static void put(L1L2PathQp *qp, int row, double value)
 {
     qp->row[qp->entries] = row;
     qp->value[qp->entries++] = value;
 }
 
 /* The rows in which q_{t,j} stands: the differences at t .. t+k, then the frame's own crop rows. */
-static void fill_q_column(const L1L2PathProblem *p, L1L2Qp *qp, int t, int j)
+static void fill_q_column(const L1L2PathProblem *p, L1L2PathQp *qp, int t, int j)
 {
-    for (int order = 1; order <= L1L2_ORDERS; order++) {
-        const int first = l1l2_terms_first(order, p->history);
+    for (int order = 1; order <= L1L2_PATH_ORDERS; order++) {
+        const int first = l1l2_path_first_term(order, p->history);
         for (int m = 0; m <= order; m++) {
             const int i = t + m - first;
             if (i < 0 || t + m >= p->count)
                 continue;
-            const double value = term_scale[order - 1] * l1l2_difference[order - 1][m];
-            put(qp, l1l2_row_term(p, order, i, j, 0), value);
-            put(qp, l1l2_row_term(p, order, i, j, 1), -value);
+            const double value = term_scale[order - 1] * l1l2_path_difference_coefficients[order - 1][m];
+            put(qp, l1l2_path_qp_row_term(p, order, i, j, 0), value);
+            put(qp, l1l2_path_qp_row_term(p, order, i, j, 1), -value);
         }
     }
     for (int r = 0; r < p->rows; r++)
-        put(qp, l1l2_row_crop(p, t, r), crop_scale * p->G[t][r][j]);
+        put(qp, l1l2_path_qp_row_constraint(p, t, r), crop_scale * p->G[t][r][j]);
 }
 
 /* Slacks, and the bounds of their rows: what a difference takes from the past is a constant. */
-static void fill_term(const L1L2PathProblem *p, L1L2Qp *qp, int order, int i, int j)
+static void fill_term(const L1L2PathProblem *p, L1L2PathQp *qp, int order, int i, int j)
 {
-    const int t = i + l1l2_terms_first(order, p->history);
-    const int row = l1l2_row_term(p, order, i, j, 0);
+    const int t = i + l1l2_path_first_term(order, p->history);
+    const int row = l1l2_path_qp_row_term(p, order, i, j, 0);
     double constant = 0.0;
     for (int m = t + 1; m <= order; m++)
-        constant += l1l2_difference[order - 1][m] * p->past[L1L2_HISTORY + t - m][j];
+        constant += l1l2_path_difference_coefficients[order - 1][m] * p->past[L1L2_PATH_HISTORY + t - m][j];
     put(qp, row, -1.0);
     put(qp, row + 1, -1.0);
-    qp->lower[row] = qp->lower[row + 1] = -L1L2_QP_INFINITY;
+    qp->lower[row] = qp->lower[row + 1] = -L1L2_PATH_QP_INFINITY;
     qp->upper[row] = -term_scale[order - 1] * constant;
     qp->upper[row + 1] = term_scale[order - 1] * constant;
 }
 
-void l1l2_path_qp_fill(const L1L2PathProblem *p, L1L2Qp *qp)
+void l1l2_path_problem_as_qp_fill(const L1L2PathProblem *p, L1L2PathQp *qp)
 {
     const int n = p->count, h = p->history;
-    qp->cols = l1l2_cols(p);
-    qp->rows = l1l2_rows(p);
+    qp->cols = l1l2_path_qp_cols(p);
+    qp->rows = l1l2_path_qp_rows(p);
     qp->entries = 0;
     for (int t = 0; t < n; t++)
         for (int j = 0; j < p->dim; j++) {
-            const int col = l1l2_col_q(p, t, j);
+            const int col = l1l2_path_qp_col_q(p, t, j);
             qp->start[col] = qp->entries;
             qp->p[col] = 2.0 * p->lambda[t];
             qp->q[col] = -2.0 * p->lambda[t] * p->camera[t][j];
             fill_q_column(p, qp, t, j);
         }
-    for (int order = 1; order <= L1L2_ORDERS; order++)
-        for (int i = 0; i < l1l2_terms(order, n, h); i++)
+    for (int order = 1; order <= L1L2_PATH_ORDERS; order++)
+        for (int i = 0; i < l1l2_path_terms(order, n, h); i++)
             for (int j = 0; j < p->dim; j++) {
-                const int col = l1l2_col_slack(p, order, i, j);
+                const int col = l1l2_path_qp_col_slack(p, order, i, j);
                 qp->start[col] = qp->entries;
                 qp->p[col] = 0.0;
                 qp->q[col] = p->weight[order - 1] / term_scale[order - 1];
@@ -112,28 +112,29 @@ void l1l2_path_qp_fill(const L1L2PathProblem *p, L1L2Qp *qp)
     qp->start[qp->cols] = qp->entries;
     for (int t = 0; t < n; t++)
         for (int r = 0; r < p->rows; r++) {
-            const int row = l1l2_row_crop(p, t, r);
+            const int row = l1l2_path_qp_row_constraint(p, t, r);
             qp->lower[row] = crop_scale * p->lo[t][r];
             qp->upper[row] = crop_scale * p->hi[t][r];
         }
     assert(qp->cols <= qp->max_cols && qp->rows <= qp->max_rows && qp->entries <= qp->max_entries);
 }
 
-void l1l2_path_qp_point(const L1L2PathProblem *p, const L1L2PathPoint *point, double *z, double *y)
+void l1l2_path_problem_as_qp_point(const L1L2PathProblem *p, const L1L2PathPoint *point, double *z, double *y)
 {
     const int n = p->count, h = p->history;
     for (int t = 0; t < n; t++) {
         for (int j = 0; j < p->dim; j++)
-            z[l1l2_col_q(p, t, j)] = point->q[t][j];
+            z[l1l2_path_qp_col_q(p, t, j)] = point->q[t][j];
         for (int r = 0; r < p->rows; r++)
-            y[l1l2_row_crop(p, t, r)] = point->crop_dual[t][r] / crop_scale;
+            y[l1l2_path_qp_row_constraint(p, t, r)] = point->constraint_dual[t][r] / crop_scale;
     }
-    for (int order = 1; order <= L1L2_ORDERS; order++)
-        for (int i = 0; i < l1l2_terms(order, n, h); i++)
+    for (int order = 1; order <= L1L2_PATH_ORDERS; order++)
+        for (int i = 0; i < l1l2_path_terms(order, n, h); i++)
             for (int j = 0; j < p->dim; j++) {
-                const int index = l1l2_term_index(p, order, i, j);
-                z[l1l2_col_slack(p, order, i, j)] = point->slack[index] * term_scale[order - 1];
+                const int index = l1l2_path_term_index(p, order, i, j);
+                z[l1l2_path_qp_col_slack(p, order, i, j)] = point->slack[index] * term_scale[order - 1];
                 for (int side = 0; side < 2; side++)
-                    y[l1l2_row_term(p, order, i, j, side)] = point->term_dual[index][side] / term_scale[order - 1];
+                    y[l1l2_path_qp_row_term(p, order, i, j, side)] =
+                        point->term_dual[index][side] / term_scale[order - 1];
             }
 }

@@ -9,7 +9,7 @@
  *             G_t    2 d (all terms) + R t + r
  *
  * d: components of q; R: crop rows of a frame; n: frames; t: frame; j: component; i: term of order k, at frame
- * i + l1l2_terms_first(k); r: crop row.
+ * i + l1l2_path_first_term(k); r: crop row.
  * Rows and slacks are scaled by hand: e is scale_k times the slack, its rows are multiplied by scale_k.
  */
 #ifndef L1L2_PATH_PROBLEM_AS_QP_H
@@ -18,20 +18,20 @@
 #include "path/problem.h"
 #include "path/qp.h"
 
-int l1l2_col_q(const L1L2PathProblem *p, int frame, int component);
-int l1l2_col_slack(const L1L2PathProblem *p, int order, int term, int component);
-int l1l2_row_term(const L1L2PathProblem *p, int order, int term, int component, int side);
-int l1l2_row_crop(const L1L2PathProblem *p, int frame, int row);
-int l1l2_cols(const L1L2PathProblem *p);
-int l1l2_rows(const L1L2PathProblem *p);
+int l1l2_path_qp_col_q(const L1L2PathProblem *p, int frame, int component);
+int l1l2_path_qp_col_slack(const L1L2PathProblem *p, int order, int term, int component);
+int l1l2_path_qp_row_term(const L1L2PathProblem *p, int order, int term, int component, int side);
+int l1l2_path_qp_row_constraint(const L1L2PathProblem *p, int frame, int row);
+int l1l2_path_qp_cols(const L1L2PathProblem *p);
+int l1l2_path_qp_rows(const L1L2PathProblem *p);
 
-/* Room for windows of up to `capacity` frames; to be freed by l1l2_qp_free(). NULL when out of memory. */
-L1L2Qp *l1l2_path_qp_create(int capacity, int dim);
+/* Room for windows of up to `capacity` frames; to be freed by l1l2_path_qp_free(). NULL when out of memory. */
+L1L2PathQp *l1l2_path_problem_as_qp_create(int capacity, int dim);
 
 /* The quadratic program of p, which must not cover more frames than qp has room for. */
-void l1l2_path_qp_fill(const L1L2PathProblem *p, L1L2Qp *qp);
+void l1l2_path_problem_as_qp_fill(const L1L2PathProblem *p, L1L2PathQp *qp);
 
 /* The same point, in the program's layout and scaling: z (cols) and duals y (rows) of q and the rest of `point`. */
-void l1l2_path_qp_point(const L1L2PathProblem *p, const L1L2PathPoint *point, double *z, double *y);
+void l1l2_path_problem_as_qp_point(const L1L2PathProblem *p, const L1L2PathPoint *point, double *z, double *y);
 
 #endif

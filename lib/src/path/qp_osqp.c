@@ -11,7 +11,7 @@
 #include "common/mem.h"
 #include "path/qp.h"
 
-static void settle(OSQPSettings *settings, const L1L2QpSettings *wanted)
+static void settle(OSQPSettings *settings, const L1L2PathQpSettings *wanted)
 {
     osqp_set_default_settings(settings);
     settings->scaling = 0;      /* path_qp.c scales by hand */
@@ -29,7 +29,7 @@ static void settle(OSQPSettings *settings, const L1L2QpSettings *wanted)
     settings->warm_start = 1;
 }
 
-static L1L2StabResult run(OSQPWorkspace *work, const L1L2Qp *qp, double *z, double *y, L1L2QpReport *report)
+static L1L2StabResult run(OSQPWorkspace *work, const L1L2PathQp *qp, double *z, double *y, L1L2PathQpReport *report)
 {
     if (osqp_warm_start(work, z, y) != 0 || osqp_solve(work) != 0)
         return L1L2STAB_ERR_BACKEND;
@@ -44,10 +44,10 @@ static L1L2StabResult run(OSQPWorkspace *work, const L1L2Qp *qp, double *z, doub
     return L1L2STAB_OK;
 }
 
-L1L2StabResult l1l2_qp_solve(const L1L2Qp *qp, const L1L2QpSettings *settings, double *z, double *y,
-                             L1L2QpReport *report)
+L1L2StabResult l1l2_path_qp_solve(const L1L2PathQp *qp, const L1L2PathQpSettings *settings, double *z, double *y,
+                             L1L2PathQpReport *report)
 {
-    *report = (L1L2QpReport){0};
+    *report = (L1L2PathQpReport){0};
     L1L2StabResult result = L1L2STAB_ERR_NOMEM;
     OSQPWorkspace *work = NULL;
     int *diagonal = l1l2_mem_new((size_t)qp->cols + 1, sizeof *diagonal);

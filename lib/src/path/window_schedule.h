@@ -26,7 +26,7 @@ typedef struct L1L2PathSchedule {
 typedef struct L1L2PathWindow {
     int64_t first; /* of the window, frames since the path's start */
     int count;     /* frames that it covers: N, or fewer at the path's end */
-    int give;      /* frames that it gives out, from its first */
+    int emit;      /* frames that it gives out, from its first */
     int shared;    /* of these, frames that can be blended with the window before it: K, or 0 for a path's first window
                     * and around an early one */
     bool early;
@@ -35,10 +35,10 @@ typedef struct L1L2PathWindow {
 L1L2PathSchedule l1l2_path_schedule_start(int window, int overlap);
 
 /* The next window that can be solved once `length` frames of the path have come; `ended`: no more will. False: none. */
-bool l1l2_path_schedule_next(L1L2PathSchedule *plan, int64_t length, bool ended, L1L2PathWindow *step);
+bool l1l2_path_schedule_next(L1L2PathSchedule *schedule, int64_t length, bool ended, L1L2PathWindow *step);
 
 /* An early window that gives out `give` frames, or all that are left of the `length` that have come. To be called when
  * l1l2_path_schedule_next() has no window. False where there is nothing to give. */
-bool l1l2_path_schedule_early(L1L2PathSchedule *plan, int64_t length, int64_t give, L1L2PathWindow *step);
+bool l1l2_path_schedule_early(L1L2PathSchedule *schedule, int64_t length, int64_t give, L1L2PathWindow *step);
 
 #endif

@@ -9,7 +9,7 @@ static double uniform(L1L2Rng *rng, double low, double high)
 }
 
 /* Where the crop window's corners go, from the definition. */
-static bool corners_inside(const L1L2PathCrop *crop, const L1L2Mat *B, double slack)
+static bool corners_inside(const L1L2PathCropWindow *crop, const L1L2Mat *B, double slack)
 {
     for (int k = 0; k < 4; k++) {
         const L1L2Point u = {crop->ratio * (k & 1 ? crop->half_w : -crop->half_w),
@@ -40,7 +40,7 @@ static L1L2Mat random_map(L1L2Rng *rng, int dim, double zoom, double linear, dou
 
 START_TEST(the_frame_has_a_diagonal_of_one)
 {
-    const L1L2PathCrop crop = l1l2_path_crop_make(1920, 1080, 0.8, 4);
+    const L1L2PathCropWindow crop = l1l2_path_crop_window(1920, 1080, 0.8, 4);
     ck_assert_near(2.0 * hypot(crop.half_w, crop.half_h), 1.0, 1e-15);
     ck_assert_near(crop.half_w / crop.half_h, 1920.0 / 1080.0, 1e-12);
 }
@@ -52,24 +52,25 @@ START_TEST(the_rows_say_what_the_definition_says)
     for (int dim = 2; dim <= 6; dim += 2) {
         int inside = 0;
         for (int i = 0; i < 20000; i++) {
-            const L1L2PathCrop crop = l1l2_path_crop_make(640, 360, uniform(&rng, 0.5, 0.99), dim);
+            const L1L2PathCropWindow crop = l1l2_path_crop_window(640, 360, uniform(&rng, 0.5, 0.99), dim);
             const L1L2Mat B = random_map(&rng, dim, 1.0, 0.12, 0.15), C = random_map(&rng, dim, 1.5, 1.0, 5.0);
             const L1L2Mat P = l1l2_mat_mul(C, B);
-            double G[L1L2_CROP_ROWS][L1L2_DIM], lo[L1L2_CROP_ROWS], hi[L1L2_CROP_ROWS], q[L1L2_DIM], worst = -1.0;
+            double G[L1L2_PATH_CONSTRAINTS][L1L2_DIM], lo[L1L2_PATH_CONSTRAINTS], hi[L1L2_PATH_CONSTRAINTS];
+            double q[L1L2_DIM], worst = -1.0;
             L1L2Mat inverse;
             l1l2_mat_inverse(C, &inverse);
             const double size = 1.0 + fabs(inverse.m[0]) + fabs(inverse.m[1]) + fabs(inverse.m[3]) + fabs(inverse.m[4]);
             if (size > 100.0)
                 continue; /* a camera that is all but flat: rounding alone decides */
             l1l2_mat_to_q(&P, q);
-            l1l2_path_crop_rows(&crop, &C, G, lo, hi);
-            for (int r = 0; r < l1l2_path_crop_row_count(dim); r++) {
+            l1l2_path_constraint_rows(&crop, &C, G, lo, hi);
+            for (int r = 0; r < l1l2_path_constraint_count(dim); r++) {
                 double v = 0.0;
                 for (int j = 0; j < dim; j++)
                     v += G[r][j] * q[j];
                 worst = fmax(worst, fmax(v - hi[r], lo[r] - v));
             }
-            ck_assert_near(worst, l1l2_path_crop_excess(&crop, &B), 1e-9);
+            ck_assert_near(worst, l1l2_path_constraint_excess(&crop, &B), 1e-9);
             if (worst < -1e-9)
                 ck_assert(corners_inside(&crop, &B, 0.0) && near_identity(&B, 0.0));
             if (worst > 1e-9)
@@ -87,11 +88,11 @@ START_TEST(what_is_admitted_is_inside_and_what_was_inside_is_unchanged)
     L1L2Rng rng = l1l2_rng_seeded(8);
     for (int dim = 2; dim <= 6; dim += 2)
         for (int i = 0; i < 20000; i++) {
-            const L1L2PathCrop crop = l1l2_path_crop_make(640, 360, uniform(&rng, 0.5, 0.99), dim);
+            const L1L2PathCropWindow crop = l1l2_path_crop_window(640, 360, uniform(&rng, 0.5, 0.99), dim);
             const L1L2Mat B = random_map(&rng, dim, 1.15, 1.0, 2.0);
-            const L1L2Mat admitted = l1l2_path_crop_admit(&crop, &B);
+            const L1L2Mat admitted = l1l2_path_constraint_shrink(&crop, &B);
             ck_assert(corners_inside(&crop, &admitted, 1e-12) && near_identity(&admitted, 1e-12));
-            const L1L2Mat again = l1l2_path_crop_admit(&crop, &admitted);
+            const L1L2Mat again = l1l2_path_constraint_shrink(&crop, &admitted);
             ck_assert_near(l1l2_mat_corner_distance(&admitted, &again, 0.5, 0.5), 0.0, 1e-12);
         }
 }
@@ -100,9 +101,9 @@ END_TEST
 START_TEST(numbers_that_are_none_become_the_identity)
 {
     for (int dim = 2; dim <= 6; dim += 2) {
-        const L1L2PathCrop crop = l1l2_path_crop_make(640, 360, 0.8, dim);
+        const L1L2PathCropWindow crop = l1l2_path_crop_window(640, 360, 0.8, dim);
         const L1L2Mat B = l1l2_mat_similarity(NAN, 0.0, HUGE_VAL, 0.0);
-        const L1L2Mat admitted = l1l2_path_crop_admit(&crop, &B);
+        const L1L2Mat admitted = l1l2_path_constraint_shrink(&crop, &B);
         ck_assert(l1l2_mat_is_identity(&admitted));
     }
 }

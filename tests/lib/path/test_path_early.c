@@ -68,12 +68,12 @@ START_TEST(hurried_at_random_nothing_is_lost_and_all_stays_inside)
         r->starts[120] = true;
         hurry_at_random(r, cfg.window, (uint64_t)i + 77);
         run(&cfg, r);
-        const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
+        const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, 4);
         int early = 0;
         for (int t = 0; t < r->frames; t++) {
             ck_assert_uint_eq(r->out[t].path_index, (uint64_t)(t < 120 ? t : t - 120));
             ck_assert_mem_eq(r->out[t].F.m, t % 120 && t != 240 ? r->F[t].m : r->out[t].F.m, sizeof r->F[t].m);
-            ck_assert_double_le(l1l2_path_crop_excess(&crop, &r->out[t].B), 1e-12);
+            ck_assert_double_le(l1l2_path_constraint_excess(&crop, &r->out[t].B), 1e-12);
             ck_assert(!r->out[t].fallback);
             early += r->out[t].early;
         }

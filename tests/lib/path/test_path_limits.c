@@ -11,11 +11,11 @@ START_TEST(every_update_transform_stays_inside_whatever_the_motion)
             cfg.window = 40, cfg.overlap = join == L1L2STAB_JOIN_BLEND ? 12 : 20;
             cfg.join = (L1L2StabJoin)join;
             cfg.crop_ratio = 0.8;
-            const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
+            const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, 4);
             Run *r = shaky_run(200, 2.0, shakes[i], (uint64_t)i);
             run(&cfg, r);
             for (int t = 0; t < r->frames; t++) {
-                ck_assert_double_le(l1l2_path_crop_excess(&crop, &r->out[t].B), 1e-12);
+                ck_assert_double_le(l1l2_path_constraint_excess(&crop, &r->out[t].B), 1e-12);
                 ck_assert(!r->out[t].fallback);
             }
             free(r);
@@ -26,7 +26,7 @@ END_TEST
 START_TEST(numbers_that_no_camera_gives_are_survived)
 {
     const L1L2PathConfig cfg = defaults();
-    const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
+    const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, 4);
     Run *r = new_run(400);
     int fallbacks = 0;
     for (int t = 100; t < 250; t++)
@@ -34,7 +34,7 @@ START_TEST(numbers_that_no_camera_gives_are_survived)
     run(&cfg, r);
     for (int t = 0; t < r->frames; t++) {
         ck_assert(l1l2_mat_is_finite(&r->out[t].B));
-        ck_assert_double_le(l1l2_path_crop_excess(&crop, &r->out[t].B), 1e-9);
+        ck_assert_double_le(l1l2_path_constraint_excess(&crop, &r->out[t].B), 1e-9);
         fallbacks += r->out[t].fallback;
     }
     ck_assert_int_gt(fallbacks, 0);
@@ -47,7 +47,7 @@ END_TEST
 START_TEST(where_no_solver_arrives_the_path_goes_on_without_a_jump)
 {
     const L1L2PathConfig cfg = defaults();
-    const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
+    const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, 4);
     Run *r = shaky_run(480, 1.0, 2.0, 8);
     L1L2Path *path;
     ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
@@ -60,7 +60,7 @@ START_TEST(where_no_solver_arrives_the_path_goes_on_without_a_jump)
             ck_assert(l1l2_path_pull(path, &r->out[pulled++]));
     }
     for (int t = 1; t < pulled; t++) {
-        ck_assert_double_le(l1l2_path_crop_excess(&crop, &r->out[t].B), 1e-12);
+        ck_assert_double_le(l1l2_path_constraint_excess(&crop, &r->out[t].B), 1e-12);
         if (r->out[t].fallback && !r->out[t - 1].fallback)
             ck_assert_near(speed_px(r, t), speed_px(r, t - 1), 0.1);
         held += r->out[t].fallback;
@@ -93,8 +93,8 @@ START_TEST(a_crop_that_changes_is_ramped_and_always_met)
             continue;
         L1L2PathFrame *f = &r->out[pulled];
         ck_assert(l1l2_path_pull(path, f));
-        const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, f->crop_ratio, 4);
-        ck_assert_double_le(l1l2_path_crop_excess(&crop, &f->B), 1e-12);
+        const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, f->crop_ratio, 4);
+        ck_assert_double_le(l1l2_path_constraint_excess(&crop, &f->B), 1e-12);
         ck_assert_double_le(fabs(f->crop_ratio - before), L1L2_CROP_STEP + 1e-12);
         ck_assert(!f->fallback);
         before = f->crop_ratio;
@@ -151,7 +151,7 @@ END_TEST
 START_TEST(a_zoom_of_ten_and_jumps_of_half_a_frame_are_solved)
 {
     const L1L2PathConfig cfg = defaults();
-    const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, cfg.crop_ratio, 4);
+    const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, 4);
     Run *zoom = wandering_run(450, 0.5, 10.0, 3.0, 5), *jumps = shaky_run(450, 0.5, 3.0, 5);
     for (int t = 100; t < 250; t++)
         zoom->F[t] = l1l2_mat_mul(zoom->F[t], l1l2_mat_similarity(pow(10.0, 1.0 / 150.0), 0.0, 0.0, 0.0));
@@ -160,8 +160,8 @@ START_TEST(a_zoom_of_ten_and_jumps_of_half_a_frame_are_solved)
     run(&cfg, zoom);
     run(&cfg, jumps);
     for (int t = 0; t < 450; t++) {
-        ck_assert_double_le(l1l2_path_crop_excess(&crop, &zoom->out[t].B), 1e-12);
-        ck_assert_double_le(l1l2_path_crop_excess(&crop, &jumps->out[t].B), 1e-12);
+        ck_assert_double_le(l1l2_path_constraint_excess(&crop, &zoom->out[t].B), 1e-12);
+        ck_assert_double_le(l1l2_path_constraint_excess(&crop, &jumps->out[t].B), 1e-12);
         ck_assert(!zoom->out[t].fallback && !jumps->out[t].fallback);
     }
     free(zoom);

@@ -42,7 +42,7 @@ START_TEST(every_map_is_of_the_model_and_inside)
         for (int i = 0; i < 6; i++) {
             const L1L2PathConfig cfg = config_of((L1L2StabMotionModel)model, (L1L2StabJoin)(i % 2));
             const int dim = l1l2_mat_dim((L1L2StabMotionModel)model);
-            const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, cfg.crop_ratio, dim);
+            const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, dim);
             Run *r = affine_run(200, 0.001 * pow(3.0, i), (uint64_t)i + 1);
             r->starts[110] = true;
             r->hurry[90] = 30, r->hurry[150] = 60;
@@ -53,7 +53,7 @@ START_TEST(every_map_is_of_the_model_and_inside)
                 const L1L2Mat F = l1l2_mat_reduce(&f->F, dim), B = l1l2_mat_reduce(&f->B, dim);
                 ck_assert_mem_eq(F.m, f->F.m, sizeof F.m);
                 ck_assert_near(l1l2_mat_corner_distance(&f->B, &B, 0.5, 0.5), 0.0, 1e-14);
-                ck_assert_double_le(l1l2_path_crop_excess(&crop, &f->B), 1e-12);
+                ck_assert_double_le(l1l2_path_constraint_excess(&crop, &f->B), 1e-12);
                 ck_assert(!f->fallback);
                 if (f->path_index > 0) { /* P_t = P_{t-1} S_t, in the reference of frame t - 1 */
                     const L1L2Mat there = l1l2_mat_mul(f->F, f->B), moved = l1l2_mat_mul(P_before, f->S);
@@ -123,14 +123,14 @@ START_TEST(where_no_solver_arrives_every_model_holds_its_course_inside)
         const int dim = l1l2_mat_dim((L1L2StabMotionModel)model);
         L1L2PathConfig cfg = config_of((L1L2StabMotionModel)model, L1L2STAB_JOIN_CONTINUOUS);
         cfg.lambda = NAN;
-        const L1L2PathCrop crop = l1l2_path_crop_make(cfg.width, cfg.height, cfg.crop_ratio, dim);
+        const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, dim);
         Run *r = affine_run(130, 0.01, 4);
         run(&cfg, r);
         for (int t = 0; t < r->frames; t++) {
             const L1L2Mat B = l1l2_mat_reduce(&r->out[t].B, dim);
             ck_assert(r->out[t].fallback);
             ck_assert_near(l1l2_mat_corner_distance(&r->out[t].B, &B, 0.5, 0.5), 0.0, 1e-14);
-            ck_assert_double_le(l1l2_path_crop_excess(&crop, &r->out[t].B), 1e-12);
+            ck_assert_double_le(l1l2_path_constraint_excess(&crop, &r->out[t].B), 1e-12);
         }
         free(r);
     }

@@ -15,7 +15,7 @@ static L1L2PathProblem *random_window(int dim, int count, int history, double la
 {
     L1L2Rng rng = l1l2_rng_seeded(seed);
     L1L2PathProblem *p = l1l2_path_problem_create(count, dim);
-    const L1L2PathCrop crop = l1l2_path_crop_make(640, 360, 0.8, dim);
+    const L1L2PathCropWindow crop = l1l2_path_crop_window(640, 360, 0.8, dim);
     L1L2Mat camera = l1l2_mat_identity();
     p->count = count;
     p->history = history;
@@ -26,7 +26,7 @@ static L1L2PathProblem *random_window(int dim, int count, int history, double la
             q[j] = (j == 2 ? 0.5 : 0.0) + uniform(&rng, -0.02, 0.03);
         camera = l1l2_mat_mul(camera, l1l2_mat_from_q(q, dim));
     }
-    for (int i = 0; i < L1L2_HISTORY; i++)
+    for (int i = 0; i < L1L2_PATH_HISTORY; i++)
         for (int j = 0; j < dim; j++)
             p->past[i][j] = (j == 2 ? 0.5 : 0.0) + uniform(&rng, -0.02, 0.02);
     return p;
@@ -34,20 +34,20 @@ static L1L2PathProblem *random_window(int dim, int count, int history, double la
 
 static void check_bijections(const L1L2PathProblem *p)
 {
-    const int cols = l1l2_cols(p), rows = l1l2_rows(p);
+    const int cols = l1l2_path_qp_cols(p), rows = l1l2_path_qp_rows(p);
     int *col_seen = calloc((size_t)cols, sizeof *col_seen), *row_seen = calloc((size_t)rows, sizeof *row_seen);
     for (int t = 0; t < p->count; t++) {
         for (int j = 0; j < p->dim; j++)
-            col_seen[l1l2_col_q(p, t, j)]++;
+            col_seen[l1l2_path_qp_col_q(p, t, j)]++;
         for (int r = 0; r < p->rows; r++)
-            row_seen[l1l2_row_crop(p, t, r)]++;
+            row_seen[l1l2_path_qp_row_constraint(p, t, r)]++;
     }
     for (int order = 1; order <= 3; order++)
-        for (int i = 0; i < l1l2_terms(order, p->count, p->history); i++)
+        for (int i = 0; i < l1l2_path_terms(order, p->count, p->history); i++)
             for (int j = 0; j < p->dim; j++) {
-                col_seen[l1l2_col_slack(p, order, i, j)]++;
-                row_seen[l1l2_row_term(p, order, i, j, 0)]++;
-                row_seen[l1l2_row_term(p, order, i, j, 1)]++;
+                col_seen[l1l2_path_qp_col_slack(p, order, i, j)]++;
+                row_seen[l1l2_path_qp_row_term(p, order, i, j, 0)]++;
+                row_seen[l1l2_path_qp_row_term(p, order, i, j, 1)]++;
             }
     for (int i = 0; i < cols; i++)
         ck_assert_int_eq(col_seen[i], 1);
@@ -63,7 +63,7 @@ START_TEST(columns_and_rows_are_bijections)
         for (int count = 1; count <= 9; count++)
             for (int history = 0; history <= 3; history++)
                 check_bijections(&(L1L2PathProblem){
-                    .dim = dim, .rows = l1l2_path_crop_row_count(dim), .count = count, .history = history});
+                    .dim = dim, .rows = l1l2_path_constraint_count(dim), .count = count, .history = history});
 }
 END_TEST
 
@@ -71,11 +71,11 @@ START_TEST(terms_reach_no_further_back_than_the_history)
 {
     for (int history = 0; history <= 3; history++)
         for (int order = 1; order <= 3; order++) {
-            const int first = l1l2_terms_first(order, history);
+            const int first = l1l2_path_first_term(order, history);
             ck_assert_int_ge(first - order, -history); /* it exists */
             if (first > 0)
                 ck_assert_int_lt(first - 1 - order, -history); /* the one before it would not */
-            ck_assert_int_eq(l1l2_terms(order, 2, history), first < 2 ? 2 - first : 0);
+            ck_assert_int_eq(l1l2_path_terms(order, 2, history), first < 2 ? 2 - first : 0);
         }
 }
 END_TEST
@@ -85,8 +85,8 @@ START_TEST(columns_are_sorted_and_within_their_room)
     for (int round = 0; round < 144; round++) {
         const int dim = 2 + 2 * (round % 3), count = 1 + round / 12, history = round / 3 % 4;
         L1L2PathProblem *p = random_window(dim, count, history, 0.5, 3);
-        L1L2Qp *qp = l1l2_path_qp_create(count, dim);
-        l1l2_path_qp_fill(p, qp);
+        L1L2PathQp *qp = l1l2_path_problem_as_qp_create(count, dim);
+        l1l2_path_problem_as_qp_fill(p, qp);
         ck_assert_int_le(qp->entries, qp->max_entries);
         for (int c = 0; c < qp->cols; c++)
             for (int k = qp->start[c]; k < qp->start[c + 1]; k++) {
@@ -94,7 +94,7 @@ START_TEST(columns_are_sorted_and_within_their_room)
                 if (k > qp->start[c])
                     ck_assert_int_lt(qp->row[k - 1], qp->row[k]);
             }
-        l1l2_qp_free(qp);
+        l1l2_path_qp_free(qp);
         l1l2_path_problem_free(p);
     }
 }
@@ -108,9 +108,9 @@ START_TEST(the_program_says_what_the_problem_says)
     for (int round = 0; round < 120; round++) {
         const int dim = 2 + 2 * (round % 3), count = 1 + round % 10, history = round % 4;
         L1L2PathProblem *p = random_window(dim, count, history, 0.7, (uint64_t)round);
-        L1L2Qp *qp = l1l2_path_qp_create(count, dim);
-        l1l2_path_qp_fill(p, qp);
-        double q[10][L1L2_DIM], slack[180], dual[180][2] = {{0}}, crop_dual[10][L1L2_CROP_ROWS] = {{0}};
+        L1L2PathQp *qp = l1l2_path_problem_as_qp_create(count, dim);
+        l1l2_path_problem_as_qp_fill(p, qp);
+        double q[10][L1L2_DIM], slack[180], dual[180][2] = {{0}}, constraint_dual[10][L1L2_PATH_CONSTRAINTS] = {{0}};
         double constant = 0.0;
         for (int t = 0; t < count; t++)
             for (int j = 0; j < dim; j++) {
@@ -119,14 +119,14 @@ START_TEST(the_program_says_what_the_problem_says)
             }
         const double(*cq)[L1L2_DIM] = (const double(*)[L1L2_DIM])q;
         for (int order = 1; order <= 3; order++)
-            for (int i = 0; i < l1l2_terms(order, count, history); i++)
+            for (int i = 0; i < l1l2_path_terms(order, count, history); i++)
                 for (int j = 0; j < dim; j++)
-                    slack[l1l2_term_index(p, order, i, j)] = fabs(
-                        l1l2_path_difference(p, cq, order, i + l1l2_terms_first(order, history), j));
+                    slack[l1l2_path_term_index(p, order, i, j)] = fabs(
+                        l1l2_path_difference(p, cq, order, i + l1l2_path_first_term(order, history), j));
         double *z = calloc((size_t)qp->cols, sizeof *z), *y = calloc((size_t)qp->rows, sizeof *y);
         double *Az = calloc((size_t)qp->rows, sizeof *Az);
-        const L1L2PathPoint point = {q, slack, dual, crop_dual};
-        l1l2_path_qp_point(p, &point, z, y);
+        const L1L2PathPoint point = {q, slack, dual, constraint_dual};
+        l1l2_path_problem_as_qp_point(p, &point, z, y);
         double objective = constant;
         for (int c = 0; c < qp->cols; c++) {
             objective += 0.5 * qp->p[c] * z[c] * z[c] + qp->q[c] * z[c];
@@ -135,7 +135,7 @@ START_TEST(the_program_says_what_the_problem_says)
         }
         ck_assert_near(objective, l1l2_path_objective(p, cq), 1e-12);
         double crop_worst = -1.0;
-        const int first_crop = l1l2_row_crop(p, 0, 0);
+        const int first_crop = l1l2_path_qp_row_constraint(p, 0, 0);
         for (int r = 0; r < first_crop; r += 2) /* one side of each pair is active, none is broken */
             ck_assert_near(fmax(Az[r] - qp->upper[r], Az[r + 1] - qp->upper[r + 1]), 0.0, 1e-10);
         for (int r = first_crop; r < qp->rows; r++)
@@ -144,7 +144,7 @@ START_TEST(the_program_says_what_the_problem_says)
         free(z);
         free(y);
         free(Az);
-        l1l2_qp_free(qp);
+        l1l2_path_qp_free(qp);
         l1l2_path_problem_free(p);
     }
 }

@@ -29,15 +29,15 @@ static L1L2Mat mat(int dim, const double p[L1L2_DIM])
 
 static void describe(const Window *w, double lambda, L1L2PathProblem *p)
 {
-    const L1L2PathCrop crop = l1l2_path_crop_make(w->width, w->height, w->crop, w->dim);
+    const L1L2PathCropWindow crop = l1l2_path_crop_window(w->width, w->height, w->crop, w->dim);
     L1L2Mat camera = l1l2_mat_identity();
     p->dim = w->dim;
-    p->rows = l1l2_path_crop_row_count(w->dim);
+    p->rows = l1l2_path_constraint_count(w->dim);
     p->count = w->count;
     p->history = w->history;
     for (int i = 0; i < w->history; i++) {
         const L1L2Mat past = mat(w->dim, w->past[i]);
-        l1l2_mat_to_q(&past, p->past[L1L2_HISTORY - w->history + i]);
+        l1l2_mat_to_q(&past, p->past[L1L2_PATH_HISTORY - w->history + i]);
     }
     for (int t = 0; t < w->count; t++) {
         if (t > 0)
@@ -73,7 +73,7 @@ static bool read_window(FILE *file, Window *w)
 /* Corners of the crop window under two paths, px at 1920x1080's diagonal. */
 static double corner_distance_px(const Window *w, const double q[L1L2_DIM], const L1L2Mat *expected)
 {
-    const L1L2PathCrop crop = l1l2_path_crop_make(w->width, w->height, w->crop, w->dim);
+    const L1L2PathCropWindow crop = l1l2_path_crop_window(w->width, w->height, w->crop, w->dim);
     const L1L2Mat found = l1l2_mat_from_q(q, w->dim);
     return hypot(1920, 1080) *
            l1l2_mat_corner_distance(&found, expected, w->crop * crop.half_w, w->crop * crop.half_h);
@@ -96,7 +96,7 @@ static void against_the_reference(L1L2StabSolver choice, double relative, double
             int t;
             ck_assert_int_eq(fscanf(file, " lambda %lf %lf", &lambda, &objective), 2);
             describe(&w, lambda, p);
-            const L1L2SolverReport report = l1l2_path_solver_solve(solver[w.dim / 2 - 1], choice, p, q);
+            const L1L2PathSolverReport report = l1l2_path_solver_solve(solver[w.dim / 2 - 1], choice, p, q);
             const double found = l1l2_path_objective(p, (const double(*)[L1L2_DIM])q);
             ck_assert_msg(report.converged, "%s, lambda %g: not converged, bound %g", w.name, lambda, report.bound);
             ck_assert_msg(fabs(found - objective) <= relative * objective + 1e-9,
@@ -159,20 +159,20 @@ static void check_kkt(const L1L2PathProblem *p, const L1L2PathPoint *point)
         for (int j = 0; j < p->dim; j++)
             force[t][j] = 2.0 * p->lambda[t] * (q[t][j] - p->camera[t][j]);
     for (int order = 1; order <= 3; order++)
-        for (int i = 0; i < l1l2_terms(order, p->count, p->history); i++)
+        for (int i = 0; i < l1l2_path_terms(order, p->count, p->history); i++)
             for (int j = 0; j < p->dim; j++) {
-                const int t = i + l1l2_terms_first(order, p->history);
-                const double *y = point->term_dual[l1l2_term_index(p, order, i, j)];
+                const int t = i + l1l2_path_first_term(order, p->history);
+                const double *y = point->term_dual[l1l2_path_term_index(p, order, i, j)];
                 const double d = l1l2_path_difference(p, q, order, t, j);
                 ck_assert(y[0] >= 0.0 && y[1] >= 0.0);
                 ck_assert_near(y[0] + y[1], p->weight[order - 1], 1e-9);
                 ck_assert_near((y[0] - y[1]) * d, p->weight[order - 1] * fabs(d), 1e-8); /* a subgradient of |d| */
                 for (int m = 0; m <= order && m <= t; m++)
-                    force[t - m][j] += (y[0] - y[1]) * l1l2_difference[order - 1][m];
+                    force[t - m][j] += (y[0] - y[1]) * l1l2_path_difference_coefficients[order - 1][m];
             }
     for (int t = 0; t < p->count; t++)
         for (int r = 0; r < p->rows; r++) {
-            const double y = point->crop_dual[t][r];
+            const double y = point->constraint_dual[t][r];
             double v = 0.0;
             for (int j = 0; j < p->dim; j++) {
                 v += p->G[t][r][j] * q[t][j];
@@ -216,7 +216,7 @@ START_TEST(osqp_alone_comes_near_the_optimum)
         random_walk(&w, 4, (uint64_t)round, 40, round, 0.01);
         describe(&w, 0.5, p);
         ck_assert(l1l2_path_solver_solve(solver, L1L2STAB_SOLVER_CHECKED, p, best).converged);
-        const L1L2SolverReport report = l1l2_path_solver_solve(solver, L1L2STAB_SOLVER_OSQP, p, q);
+        const L1L2PathSolverReport report = l1l2_path_solver_solve(solver, L1L2STAB_SOLVER_OSQP, p, q);
         ck_assert_int_eq(report.decided_by, L1L2STAB_SOLVER_OSQP);
         ck_assert_near(l1l2_path_objective(p, (const double(*)[L1L2_DIM])q) /
                            l1l2_path_objective(p, (const double(*)[L1L2_DIM])best), 1.0, 1e-3);
@@ -257,10 +257,10 @@ static double uniform(L1L2Rng *rng, double low, double high)
 static void describe_long(L1L2PathProblem *p, uint64_t seed)
 {
     L1L2Rng rng = l1l2_rng_seeded(seed);
-    const L1L2PathCrop crop = l1l2_path_crop_make(640, 360, 0.9, p->dim);
+    const L1L2PathCropWindow crop = l1l2_path_crop_window(640, 360, 0.9, p->dim);
     p->count = 900;
     p->history = 3;
-    for (int i = 0; i < L1L2_HISTORY; i++)
+    for (int i = 0; i < L1L2_PATH_HISTORY; i++)
         p->past[i][0] = 0.001 * (i - 3), p->past[i][2] = 0.5;
     for (int t = 0; t < p->count; t++) {
         const double roll = uniform(&rng, -0.012, 0.012);

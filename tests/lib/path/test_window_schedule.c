@@ -5,24 +5,24 @@
 
 enum { MAX_FRAMES = 200 };
 
-/* Walks a path of `length` frames, frame by frame as they come, and checks every promise of plan.h on the way. */
+/* Walks a path of `length` frames, frame by frame as they come, and checks every promise of schedule.h on the way. */
 static void walk(int window, int overlap, int length)
 {
     int given_at[MAX_FRAMES] = {0}; /* 1 + the number of frames that had come when a frame was decided */
-    L1L2PathSchedule plan = l1l2_path_schedule_start(window, overlap);
+    L1L2PathSchedule schedule = l1l2_path_schedule_start(window, overlap);
     L1L2PathWindow step;
     int next = 0, steps = 0;
     for (int come = 1; come <= length; come++) {
         const bool last = come == length;
-        while (l1l2_path_schedule_next(&plan, come, false, &step) ||
-               (last && l1l2_path_schedule_next(&plan, come, true, &step))) {
+        while (l1l2_path_schedule_next(&schedule, come, false, &step) ||
+               (last && l1l2_path_schedule_next(&schedule, come, true, &step))) {
             ck_assert_int_eq(step.first, next); /* frames are given out in order, each once */
             ck_assert_int_ge(step.count, 1);
             ck_assert_int_le(step.count, window);
             ck_assert_int_le(step.first + step.count, come); /* only frames that have come */
             ck_assert_int_eq(step.shared, steps == 0 ? 0 : overlap);
             ck_assert_int_ge(step.count, step.shared); /* the last window covers at least what it shares */
-            for (int i = 0; i < step.give; i++)
+            for (int i = 0; i < step.emit; i++)
                 given_at[next++] = come;
             steps++;
         }
@@ -30,7 +30,7 @@ static void walk(int window, int overlap, int length)
     ck_assert_int_eq(next, length);
     for (int t = 0; t < length; t++) /* frame t can leave when frame t + N - 1 has come, or at the end */
         ck_assert_int_le(given_at[t], t + window < length ? t + window : length);
-    ck_assert(!l1l2_path_schedule_next(&plan, length, true, &step));
+    ck_assert(!l1l2_path_schedule_next(&schedule, length, true, &step));
 }
 
 START_TEST(every_frame_is_given_out_once_in_order_and_in_time)
@@ -53,13 +53,13 @@ END_TEST
 
 START_TEST(sliding_windows_give_out_one_frame_each)
 {
-    L1L2PathSchedule plan = l1l2_path_schedule_start(10, 9);
+    L1L2PathSchedule schedule = l1l2_path_schedule_start(10, 9);
     L1L2PathWindow step;
     for (int come = 10; come < 30; come++) {
-        ck_assert(l1l2_path_schedule_next(&plan, come, false, &step));
-        ck_assert_int_eq(step.give, 1);
+        ck_assert(l1l2_path_schedule_next(&schedule, come, false, &step));
+        ck_assert_int_eq(step.emit, 1);
         ck_assert_int_eq(step.first, come - 10);
-        ck_assert(!l1l2_path_schedule_next(&plan, come, false, &step));
+        ck_assert(!l1l2_path_schedule_next(&schedule, come, false, &step));
     }
 }
 END_TEST
@@ -69,42 +69,42 @@ START_TEST(early_windows_give_what_is_asked_and_the_next_ones_are_whole_again)
     for (int seed = 1; seed <= 300; seed++) {
         const int window = 4 + seed % 20, overlap = 3 + seed % (window - 3), length = 120;
         L1L2Rng rng = l1l2_rng_seeded((uint64_t)seed);
-        L1L2PathSchedule plan = l1l2_path_schedule_start(window, overlap);
+        L1L2PathSchedule schedule = l1l2_path_schedule_start(window, overlap);
         L1L2PathWindow step;
         int next = 0;
         bool early = true; /* so that the first window shares nothing */
         for (int come = 1; come <= length; come++) {
             const bool hurry = l1l2_rng_next(&rng) % 8 == 0;
             const int give = (int)(l1l2_rng_next(&rng) % (unsigned)window);
-            while (l1l2_path_schedule_next(&plan, come, come == length, &step)) {
+            while (l1l2_path_schedule_next(&schedule, come, come == length, &step)) {
                 ck_assert_int_eq(step.first, next);
                 ck_assert_int_eq(step.count, come - next < window ? come - next : window);
                 ck_assert_int_eq(step.shared, early ? 0 : overlap);
                 ck_assert(!step.early);
                 early = false;
-                next += step.give;
+                next += step.emit;
             }
             ck_assert_int_lt(come - next, window); /* frame t is given out when frame t + N - 1 has come */
-            if (hurry && l1l2_path_schedule_early(&plan, come, give, &step)) {
+            if (hurry && l1l2_path_schedule_early(&schedule, come, give, &step)) {
                 ck_assert_int_eq(step.first, next);
                 ck_assert_int_eq(step.count, come - next); /* all that have come */
-                ck_assert_int_eq(step.give, give < step.count ? give : step.count);
+                ck_assert_int_eq(step.emit, give < step.count ? give : step.count);
                 ck_assert_int_eq(step.shared, 0);
                 ck_assert(step.early);
                 early = true;
-                next += step.give;
+                next += step.emit;
             }
         }
         ck_assert_int_eq(next, length);
-        ck_assert(!l1l2_path_schedule_early(&plan, length, 5, &step));
+        ck_assert(!l1l2_path_schedule_early(&schedule, length, 5, &step));
     }
 }
 END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("plan");
-    TCase *tcase = tcase_create("plan");
+    Suite *suite = suite_create("schedule");
+    TCase *tcase = tcase_create("schedule");
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, every_frame_is_given_out_once_in_order_and_in_time);
     tcase_add_test(tcase, lengths_around_the_window_work);

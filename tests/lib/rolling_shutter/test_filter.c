@@ -237,10 +237,10 @@ static L1L2ShutterResidual random_residual(L1L2Rng *rng, double size)
 /* A B_t that a path may have: anything, pulled in until the crop window is inside. */
 static L1L2Mat random_map(L1L2Rng *rng, double ratio)
 {
-    const L1L2PathCrop crop = l1l2_path_crop_make(WIDTH, HEIGHT, ratio, 4);
+    const L1L2PathCropWindow crop = l1l2_path_crop_window(WIDTH, HEIGHT, ratio, 4);
     const L1L2Mat wild = l1l2_mat_similarity(uniform(rng, 0.9, 1.1), uniform(rng, -0.1, 0.1), uniform(rng, -0.3, 0.3),
                                              uniform(rng, -0.3, 0.3));
-    const L1L2Mat B = l1l2_path_crop_admit(&crop, &wild);
+    const L1L2Mat B = l1l2_path_constraint_shrink(&crop, &wild);
     return l1l2_mat_mul(l1l2_mat_rescale(B, diagonal_px), l1l2_mat_diagonal(ratio, ratio));
 }
 

@@ -1,36 +1,47 @@
 /* SPDX-License-Identifier: MIT */
-/* Down the columns first, row by row as they lie in memory: the source is read once, at the speed of reading. */
+/*
+ * Down the columns first, then across.
+ *
+ * Rows are added up in the order in which they lie in memory, so the source is read once, at the speed of reading. What
+ * is left to do across is one row of sums for each output row.
+ *
+ * Sizes from : to are reduced to coprime numbers total : unit. With every source sample cut into `unit` parts, each
+ * output covers exactly `total` of these parts, and all weights are whole numbers.
+ */
 #include "image/area_scale.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
+#include "common/cpu.h"
 #include "common/mem.h"
 #include "image/area_scale_row.h"
 
 enum { COLUMN_MAX = INT16_MAX, WEIGHT_MAX = INT16_MAX };
 
-/* `from` samples become `to`: each of these covers `total` parts of the source, each of those has `unit` parts. */
+/* `from` source samples become `to` outputs. A source sample has `unit` parts, an output covers `total` of them. */
 typedef struct Axis {
     int from, to, unit, total;
 } Axis;
 
 struct L1L2AreaScaler {
-    bool deep;          /* samples of 16 bits */
-    bool copy;          /* the source is the output */
-    bool narrow;        /* bytes, and their weighted sums fit a column's 15 bits */
-    bool pairs;         /* halved across, one component */
+    L1L2AreaScaleFunctions functions;
+    bool deep;          /* samples have 16 bits */
+    bool copy;          /* the output is the source: same size, one component of 8 bits */
+    bool narrow;        /* samples are bytes, and a column's weighted sum of them fits 15 bits */
+    bool pairs;         /* one component, halved across */
     int components;     /* of a pixel */
     Axis x, y;
-    int shift;          /* low bits of a column's sum that are rounded off */
-    int taps, count;    /* across; outputs, up to a whole block */
-    float half, scale;  /* from the sum across to the output */
-    int32_t *first;     /* of `count` */
-    int16_t *weight;    /* of count * taps, as scale_row.h wants them */
-    uint32_t *sum;      /* of a row of samples, down the columns */
-    int16_t *column;    /* what becomes of it; zeros behind it */
-    int32_t *across;    /* of `count` */
+    int shift;          /* low bits of a column's sum that are rounded off, so that 15 bits remain */
+    int taps;           /* samples that an output sums across, rounded up to a whole block */
+    int count;          /* outputs of a row, rounded up to a whole block */
+    float half, scale;  /* output = (sum across + half) * scale, cut to an integer */
+    int32_t *first;     /* [count]: the first sample of each output */
+    int16_t *weight;    /* [count * taps], in the order of area_scale_row.h */
+    uint32_t *sum;      /* [samples of a row]: weighted sums down the columns */
+    int16_t *column;    /* [samples of a row + taps]: these sums in 15 bits; zeros behind them */
+    int32_t *across;    /* [count]: sums across */
 };
 
 static Axis axis_new(int from, int to)
@@ -49,7 +60,7 @@ static int first_covered(const Axis *axis, int i)
     return (int)((int64_t)i * axis->total / axis->unit);
 }
 
-/* How many parts of source sample j output i covers. */
+/* The number of parts of source sample j that output i covers. */
 static int covered(const Axis *axis, int i, int j)
 {
     const int64_t start = (int64_t)i * axis->total, low = (int64_t)j * axis->unit;
@@ -58,11 +69,11 @@ static int covered(const Axis *axis, int i, int j)
     return parts > 0 ? (int)parts : 0;
 }
 
-/* Weights across, of pixels and components, as far as the sums so far are from those of exact ones rounded: so each
- * output's weights have the same sum, which is returned. */
-static int weigh(L1L2AreaScaler *s, const double *grey)
+/* Sets the weights across. A weight is the difference of two running sums of exact weights, each rounded: so the
+ * weights of every output have the same sum, which is returned. */
+static int set_weights(L1L2AreaScaler *s, const double *grey)
 {
-    const int whole = s->components == 1 ? s->x.total : WEIGHT_MAX, block = L1L2_SCALE_BLOCK;
+    const int whole = s->components == 1 ? s->x.total : WEIGHT_MAX, block = L1L2_AREA_SCALE_BLOCK;
     for (int x = 0; x < s->x.to; x++) {
         const int first = first_covered(&s->x, x);
         double exact = 0.0;
@@ -79,17 +90,17 @@ static int weigh(L1L2AreaScaler *s, const double *grey)
     return whole;
 }
 
-/* depth: bits of a sample, its unused low ones included. */
+/* Chooses the shift that makes a column's sum fit 15 bits, and the scale that brings sums back to 8 bits. */
 static void set_precision(L1L2AreaScaler *s, const L1L2FormatInfo *format)
 {
-    const int depth = format->depth + format->shift;
+    const int depth = format->depth + format->shift; /* bits of a sample, its unused low bits included */
     const uint32_t highest = ((1u << format->depth) - 1) << format->shift, most = highest * (uint32_t)s->y.total;
     while ((most + (1u << s->shift >> 1)) >> s->shift > COLUMN_MAX)
         s->shift++;
     s->narrow = !s->deep && s->shift == 0;
-    const double unit = ldexp((double)weigh(s, format->grey) * s->y.total, depth - 8 - s->shift);
+    const double unit = ldexp((double)set_weights(s, format->grey) * s->y.total, depth - 8 - s->shift);
     s->scale = (float)(1.0 / unit);
-    s->half = (float)(0.5 * unit + 0.25); /* a half of the sum's own unit keeps halves up */
+    s->half = (float)(0.5 * unit + 0.25); /* the 0.25 makes exact halves round up in spite of float's own rounding */
 }
 
 L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, int height, int out_width, int out_height)
@@ -97,14 +108,15 @@ L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, in
     L1L2AreaScaler *s = l1l2_mem_new(1, sizeof *s);
     if (!s)
         return NULL;
-    const int block = L1L2_SCALE_BLOCK;
+    const int block = L1L2_AREA_SCALE_BLOCK;
+    l1l2_image_scale_functions_init(&s->functions, l1l2_cpu_features());
     s->deep = format->depth > 8;
     s->components = l1l2_image_format_pixel_components(format);
     s->x = axis_new(width, out_width);
     s->y = axis_new(height, out_height);
     s->copy = !s->deep && s->components == 1 && s->x.total == 1 && s->y.total == 1;
     s->pairs = s->components == 1 && s->x.total == 2 && s->x.unit == 1;
-    /* The first sample may be covered by one part alone. */
+    /* An output may begin within a sample: then it reaches one sample further. */
     const int pixels = (s->x.total + s->x.unit - 1) / s->x.unit + (s->x.unit > 1);
     s->taps = (pixels * s->components + block - 1) / block * block;
     s->count = (out_width + block - 1) / block * block;
@@ -134,22 +146,35 @@ void l1l2_image_scale_free(L1L2AreaScaler *s)
     l1l2_mem_free(s);
 }
 
-/* sum = weight * row, or added to it. */
-#define DEFINE_ADD(name, Sample, Sum)                                                                                 \
-    static void name(const Sample *row, uint16_t weight, int count, bool first, Sum *restrict sum)                    \
+/* Rows may begin at any address, so words are not read through a pointer to words. */
+static inline uint16_t load_byte(const uint8_t *row, int i)
+{
+    return row[i];
+}
+
+static inline uint16_t load_word(const uint8_t *row, int i)
+{
+    uint16_t word;
+    memcpy(&word, row + 2 * (ptrdiff_t)i, sizeof word);
+    return word;
+}
+
+/* sum = weight * row if it is the first row of an output, else sum += weight * row. count: samples. */
+#define DEFINE_ADD(name, load, Sum)                                                                                   \
+    static void name(const uint8_t *row, uint16_t weight, int count, bool first, Sum *restrict sum)                   \
     {                                                                                                                 \
         if (first)                                                                                                    \
             for (int i = 0; i < count; i++)                                                                           \
-                sum[i] = (Sum)((uint32_t)weight * row[i]);                                                            \
+                sum[i] = (Sum)((uint32_t)weight * load(row, i));                                                      \
         else                                                                                                          \
             for (int i = 0; i < count; i++)                                                                           \
-                sum[i] = (Sum)(sum[i] + (uint32_t)weight * row[i]);                                                   \
+                sum[i] = (Sum)(sum[i] + (uint32_t)weight * load(row, i));                                             \
     }
-DEFINE_ADD(add_narrow, uint8_t, int16_t)
-DEFINE_ADD(add_bytes, uint8_t, uint32_t)
-DEFINE_ADD(add_words, uint16_t, uint32_t)
+DEFINE_ADD(add_narrow, load_byte, int16_t)
+DEFINE_ADD(add_bytes, load_byte, uint32_t)
+DEFINE_ADD(add_words, load_word, uint32_t)
 
-/* Samples with bits set above their depth saturate. */
+/* Sums to 15 bits, rounded. Samples with bits set above their depth saturate. */
 static void round_columns(const uint32_t *sum, int count, int shift, int16_t *restrict column)
 {
     const uint32_t half = 1u << shift >> 1;
@@ -188,7 +213,7 @@ void l1l2_image_scale_run(L1L2AreaScaler *s, const uint8_t *data, ptrdiff_t stri
             if (s->narrow)
                 add_narrow(row, weight, samples, j == first, s->column);
             else if (s->deep)
-                add_words((const void *)row, weight, samples, j == first, s->sum);
+                add_words(row, weight, samples, j == first, s->sum);
             else
                 add_bytes(row, weight, samples, j == first, s->sum);
         }
@@ -197,7 +222,7 @@ void l1l2_image_scale_run(L1L2AreaScaler *s, const uint8_t *data, ptrdiff_t stri
         if (s->pairs)
             add_pairs(s->column, s->x.to, s->across);
         else
-            l1l2_image_scale_row(s->column, s->first, s->weight, s->taps, s->count, s->across);
+            s->functions.row(s->column, s->first, s->weight, s->taps, s->count, s->across);
         round_outputs(s->across, s->x.to, s->half, s->scale, out);
     }
 }

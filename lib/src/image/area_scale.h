@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Pictures made smaller by area: each grey output pixel is the mean of the part of the source that it covers. A leaf.
+ * Scales the first plane of a frame down to a small grey picture by area averaging: each output pixel is the mean of
+ * the part of the source that it covers. Color components are mixed to grey with the weights of the format.
  *
- * Fixed point. A column's weighted sum is exact as long as it fits 15 bits, which it does for bytes by any factor of
- * few parts (2, 3, 4/3, 9/8); else it is rounded to 14 bits or more. The sum across is exact for one component and
- * rounded once, halves up.
+ * Fixed point. A column's weighted sum is exact while it fits 15 bits: for bytes, while the highest level times the
+ * parts that an output covers does, 255 * 128. That holds for factors that are ratios of small numbers, such as 2, 3,
+ * 4/3 and 9/8. Otherwise the sum is rounded to between 14 and 15 bits. The sum across is exact for one component, and
+ * rounded to 8 bits once, halves up. It fits 32 bits: at most 2^15 times the weights of an output, below 2^15 in sum.
  */
 #ifndef L1L2_IMAGE_AREA_SCALE_H
 #define L1L2_IMAGE_AREA_SCALE_H
@@ -20,12 +22,14 @@ extern "C" {
 
 typedef struct L1L2AreaScaler L1L2AreaScaler;
 
-/* From the first plane of frames of width x height pixels to out_width x out_height, 1 to as many. NULL: no memory. */
+/* From the first plane of frames of width x height pixels to out_width x out_height, which is 1 x 1 at least and not
+ * larger than the frame. NULL: out of memory. */
 L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, int height, int out_width,
                                      int out_height);
 void l1l2_image_scale_free(L1L2AreaScaler *s);
 
-/* Components of more than 8 bits become 8. Strides in bytes, of any sign; a scaler is used by one thread at a time. */
+/* Writes the grey picture, 8 bits a pixel, to out. Strides are in bytes, of any sign and parity; data may have any
+ * alignment, also where a component has two bytes. A scaler is used by one thread at a time. */
 void l1l2_image_scale_run(L1L2AreaScaler *s, const uint8_t *data, ptrdiff_t stride, uint8_t *out, ptrdiff_t out_stride);
 
 #ifdef __cplusplus

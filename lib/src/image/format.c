@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* The pixel formats, one row each. Adding one? A row here, its number in the public header, its name in the caps; and
- * if it is packed 4:2:2, its layout in warp_packed.c. */
+/* The pixel formats, one row each. A new format needs a row here, its number in the public header and its name in the
+ * element's caps; if it is packed 4:2:2, also its layout in warp/packed422.c. */
 #include "image/format.h"
 
 #include <stdbool.h>
 
-/* Grey: luma, the green plane of planar RGB, or BT.601's mix of the colours. */
+/* The grey picture: luma, the green plane of planar RGB, or BT.601's mix of the colors. */
 #define FIRST {1.0}
 #define SECOND {0.0, 1.0}
 #define THIRD {0.0, 0.0, 1.0}

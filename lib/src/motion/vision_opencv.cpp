@@ -18,6 +18,7 @@
 #include <opencv2/video/tracking.hpp> /* the pyramid */
 
 #include "common/log.h"
+#include "common/cpu.h"
 #include "image/area_scale.h"
 #include "motion/lucas_kanade.h"
 
@@ -53,6 +54,7 @@ using Scaler = std::unique_ptr<L1L2AreaScaler, decltype(&l1l2_image_scale_free)>
 struct L1L2Vision {
     L1L2VisionConfig cfg;
     cv::Size size;
+    L1L2LkFunctions lucas_kanade{};
     Scaler to_grey{nullptr, l1l2_image_scale_free}, to_thumbnail{nullptr, l1l2_image_scale_free};
     cv::Mat grey, previous_grey;
     std::vector<cv::Mat> pyramid, previous_pyramid;
@@ -232,6 +234,7 @@ L1L2StabResult l1l2_vision_create(L1L2Vision **out, const L1L2VisionConfig *cfg)
     return guard(cfg->log, [&] {
         std::unique_ptr<L1L2Vision> v(new L1L2Vision);
         v->cfg = *cfg;
+        l1l2_lk_functions_init(&v->lucas_kanade, l1l2_cpu_features());
         v->size = cv::Size(scaled_side(*cfg, cfg->width), scaled_side(*cfg, cfg->height));
         v->active = cv::Rect(cv::Point(), v->size);
         v->to_grey = scaler(cfg->format, cv::Size(cfg->width, cfg->height), v->size);
@@ -328,8 +331,9 @@ L1L2StabResult l1l2_vision_track(L1L2Vision *v, const L1L2Pixel *from, L1L2Pixel
         for (int i = 0; i < count; i++) {
             const L1L2LkPoint start = {from[i].x, from[i].y};
             L1L2LkPoint there = start, back = start;
-            const bool found = l1l2_lk_follow(before, now, all, start, &there) &&
-                               l1l2_lk_follow(now, before, std::min(all, kBackLevels + 1), there, &back);
+            const bool found = l1l2_lk_follow(&v->lucas_kanade, before, now, all, start, &there) &&
+                               l1l2_lk_follow(&v->lucas_kanade, now, before, std::min(all, kBackLevels + 1), there,
+                                              &back);
             to[i] = {there.x, there.y};
             ok[i] = found && inside(v, {there.x, there.y}) &&
                     std::hypot(double(back.x - start.x), double(back.y - start.y)) <= max_return;

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "warp/bilinear_u8.h"
-
+/* Bilinear scanlines in plain C. */
 #include "warp/bilinear_u8_impl.h"
 
-SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpScanline *line, uint8_t *dst, const int components)
+L1L2_INLINE void run(const L1L2WarpPlane *src, const L1L2WarpScanline *scanline, uint8_t *dst, const int components)
 {
-    for (int k = 0; k < line->along_pieces; k++)
-        linear_plain(src, line, k, line->along[k].from, end_of_samples(line, k), dst, components);
+    for (int k = 0; k < scanline->along_pieces; k++)
+        bilinear_plain(src, scanline, k, scanline->along[k].from, end_of_samples(scanline, k), dst, components);
 }
 
-DEFINE_LINEAR_RUNS(l1l2_warp_bilinear_run_plain)
+DEFINE_BILINEAR_RUNS(l1l2_warp_bilinear_u8_init)

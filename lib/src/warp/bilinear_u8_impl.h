@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: MIT */
-/* For the implementations of warp_linear.h: samples in plain C, and one body for every number of components. */
+/* For the implementations of bilinear_u8.h: samples in plain C, which SIMD code uses at the edges of a plane; and the
+ * macro that compiles one body for every number of components. */
 #ifndef L1L2_WARP_BILINEAR_U8_IMPL_H
 #define L1L2_WARP_BILINEAR_U8_IMPL_H
 
 #include "warp/bilinear_u8.h"
+#include "warp/functions.h"
 
 /* Samples from .. to - 1 of a run, all of the k-th pieces. */
-SPECIALIZED void linear_plain(const L1L2WarpPlane *src, const L1L2WarpScanline *line, int k, int from, int to,
+L1L2_INLINE void bilinear_plain(const L1L2WarpPlane *src, const L1L2WarpScanline *scanline, int k, int from, int to,
                               uint8_t *dst, const int components)
 {
     enum { TO_SHARE = 15 - L1L2_WARP_PHASE_BITS, ONE = 1 << L1L2_WARP_BILINEAR_BITS };
     for (int i = from; i < to; i++) {
-        const int32_t x = l1l2_warp_piece_position(&line->along[k], i);
-        const int32_t y = l1l2_warp_piece_position(&line->down[k], i);
+        const int32_t x = l1l2_warp_piece_position(&scanline->along[k], i);
+        const int32_t y = l1l2_warp_piece_position(&scanline->down[k], i);
         const int share_x = (x & (L1L2_WARP_PHASES - 1)) << TO_SHARE;
         const int share_y = (y & (L1L2_WARP_PHASES - 1)) << TO_SHARE;
-        const int column = (x >> L1L2_WARP_PHASE_BITS) + line->first, row = y >> L1L2_WARP_PHASE_BITS;
+        const int column = (x >> L1L2_WARP_PHASE_BITS) + scanline->first, row = y >> L1L2_WARP_PHASE_BITS;
         const ptrdiff_t left = (ptrdiff_t)l1l2_warp_clamp(column, src->width) * components;
         const ptrdiff_t right = (ptrdiff_t)l1l2_warp_clamp(column + 1, src->width) * components;
         for (int c = 0; c < components; c++) {
@@ -30,26 +32,31 @@ SPECIALIZED void linear_plain(const L1L2WarpPlane *src, const L1L2WarpScanline *
     }
 }
 
-/* Where the k-th piece of samples ends. */
-static inline int end_of_samples(const L1L2WarpScanline *line, int k)
+/* The sample at which the k-th piece ends. */
+static inline int end_of_samples(const L1L2WarpScanline *scanline, int k)
 {
-    return k + 1 < line->along_pieces ? line->along[k + 1].from : line->count;
+    return k + 1 < scanline->along_pieces ? scanline->along[k + 1].from : scanline->count;
 }
 
-#define DEFINE_LINEAR_RUN(components)                                                                                  \
-    static void run_##components(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpScanline *line, \
-                                 uint8_t *dst)                                                                         \
-    {                                                                                                                  \
-        run(src, line, dst, components);                                                                               \
+#define DEFINE_BILINEAR_RUN(components)                                                                               \
+    static void run_##components(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel,                              \
+                                 const L1L2WarpScanline *scanline, uint8_t *dst)                                      \
+    {                                                                                                                 \
+        (void)kernel;                                                                                                 \
+        run(src, scanline, dst, components);                                                                          \
     }
 
-/* From run(src, line, dst, components) the function that looks its versions up. */
-#define DEFINE_LINEAR_RUNS(name)                                                                                       \
-    DEFINE_LINEAR_RUN(1)                                                                                               \
-    DEFINE_LINEAR_RUN(2) DEFINE_LINEAR_RUN(3) DEFINE_LINEAR_RUN(4) L1L2WarpScanlineRun *name(int components)           \
-    {                                                                                                                  \
-        static L1L2WarpScanlineRun *const runs[] = {run_1, run_2, run_3, run_4};                                       \
-        return runs[components - 1];                                                                                   \
+/* Compiles run(src, scanline, dst, components) for each number of components, and defines the function init() that puts
+ * these four into the table. */
+#define DEFINE_BILINEAR_RUNS(init)                                                                                    \
+    DEFINE_BILINEAR_RUN(1)                                                                                            \
+    DEFINE_BILINEAR_RUN(2)                                                                                            \
+    DEFINE_BILINEAR_RUN(3)                                                                                            \
+    DEFINE_BILINEAR_RUN(4)                                                                                            \
+    void init(L1L2WarpFunctions *functions)                                                                           \
+    {                                                                                                                 \
+        functions->bilinear_u8[0] = run_1, functions->bilinear_u8[1] = run_2;                                         \
+        functions->bilinear_u8[2] = run_3, functions->bilinear_u8[3] = run_4;                                         \
     }
 
 #endif

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The grids of planes, the cells of runs, and the generators of positions in plain C. */
 #include "warp/coords.h"
 
 #include "warp/coords_impl.h"
@@ -17,7 +18,8 @@ L1L2WarpGrid l1l2_warp_grid(const L1L2FormatInfo *format, int plane, L1L2StabChr
     };
 }
 
-/* Sample -> frame position -> centred -> map -> frame position -> sample. All offsets are multiples of 1/2, so that the
+/* A sample to its frame position, to coordinates around the center, through the map, and back. This is the map between
+ * two other bases, but not a product of matrices: evaluated in this order, with offsets that are multiples of 1/2, the
  * identity and whole steps come out exact. */
 L1L2WarpAffine l1l2_warp_affine(const L1L2Mat *map, const L1L2WarpGrid *dst, const L1L2WarpGrid *src)
 {
@@ -36,7 +38,7 @@ L1L2WarpCells l1l2_warp_mesh_cells(const L1L2WarpMeshPlane *plane, int u, int co
 {
     const int last = plane->mesh->columns - 2;
     const double width = plane->dst.size_x / (plane->mesh->columns - 1) / plane->dst.step_x; /* samples */
-    const double origin = plane->dst.first_x / plane->dst.step_x; /* of sample 0 from the frame's left border */
+    const double origin = plane->dst.first_x / plane->dst.step_x; /* from the frame's left border to sample 0 */
     const int guess = (int)((origin + u) / width);
     L1L2WarpCells cells = {.column = guess < last ? guess : last, .slope = 1.0 / width};
     cells.column -= cells.column > 0 && width * cells.column - origin > u;
@@ -53,19 +55,10 @@ L1L2WarpCells l1l2_warp_mesh_cells(const L1L2WarpMeshPlane *plane, int u, int co
     return cells;
 }
 
-SPECIALIZED void run_fixed(uint64_t at, uint64_t step, int count, int32_t *out)
+L1L2_INLINE void run_fixed(uint64_t at, uint64_t step, int count, int32_t *out)
 {
     for (int i = 0; i < count; i++, at += step)
         out[i] = (int32_t)(uint32_t)(at >> POSITION_SHIFT);
 }
 
-DEFINE_GENERATORS(l1l2_warp_generators_plain)
-
-const L1L2WarpGenerators *l1l2_warp_generators(void)
-{
-#ifdef L1L2_WARP_AVX2
-    if (__builtin_cpu_supports("avx2"))
-        return &l1l2_warp_generators_avx2;
-#endif
-    return &l1l2_warp_generators_plain;
-}
+DEFINE_GENERATORS(l1l2_warp_coords_init)

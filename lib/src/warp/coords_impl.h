@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * For the implementations of warp_coords.h: positions are lines in 64-bit fixed point, one for an affine map's run, one
- * for each cell of a mesh. An implementation writes run_fixed(), which all the rest is compiled around.
+ * For the implementations of coords.h. Positions are evenly spaced numbers in 64-bit fixed point: one sequence for the
+ * run of an affine map, one for each cell of a mesh. An implementation writes run_fixed(), and all the rest is compiled
+ * around it.
  */
 #ifndef L1L2_WARP_COORDS_IMPL_H
 #define L1L2_WARP_COORDS_IMPL_H
@@ -9,8 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "warp/coords.h"
-#include "warp/sample.h"
+#include "warp/functions.h"
 
 enum {
     FRACTION_BITS = 32,
@@ -18,16 +18,19 @@ enum {
     HALF_PHASE = 1 << (POSITION_SHIFT - 1)
 };
 
-/* Positions stay under FAR + MAX_STEP * 2^14 samples: 52 bits in 64-bit fixed point, 30 in a run's 32-bit one. */
+/* Where fixed point is used, positions stay below FAR + MAX_STEP * 2^14 = 2^20 samples in size: 20 bits and a sign
+ * before the point, so 53 bits with the 32 behind it, and 31 with the 10 of a phase. */
 static const double FAR = 524288.0;
 static const double MAX_STEP = 32.0;
 
-/* Writes `at`, `at + step`, ... as positions, cut, not rounded; up to L1L2_WARP_RUN_SLACK more than count. Unsigned,
- * for that shift is defined: the bits that are kept are the signed one's. */
+/* Writes `at`, `at + step`, ... as positions, cut, not rounded; up to L1L2_WARP_RUN_SLACK more than count. The numbers
+ * have a sign, but are passed as unsigned ones: their sums wrap around and their shift to the right is defined. The
+ * bits that are kept are the same. */
 typedef void RunFixed(uint64_t at, uint64_t step, int count, int32_t *out);
 
-/* To the nearest, by way of a double's bits where its unit is 1, which vectorizes. |at| <= 2^19. */
-SPECIALIZED uint64_t to_fixed(double at)
+/* The nearest fixed-point number. A double between 2^52 and 2^53 has the unit 1, so adding 1.5 * 2^52 rounds to an
+ * integer, which is then the difference of the bits. Unlike a call of llrint(), this vectorizes. |at| <= 2^19. */
+L1L2_INLINE uint64_t to_fixed(double at)
 {
     const double ground = 6755399441055744.0; /* 1.5 * 2^52 */
     const double moved = at * 4294967296.0 + ground;
@@ -37,14 +40,14 @@ SPECIALIZED uint64_t to_fixed(double at)
     return bits - ground_bits;
 }
 
-/* Positions `start + step * (u + i)`. */
-SPECIALIZED void run_line(double start, double step, int u, int count, int32_t *out, RunFixed *run_fixed)
+/* Writes the positions `start + step * (u + i)`. */
+L1L2_INLINE void run_even_steps(double start, double step, int u, int count, int32_t *out, RunFixed *run_fixed)
 {
     const uint64_t step_fixed = to_fixed(step);
     run_fixed(to_fixed(start) + (uint64_t)u * step_fixed + HALF_PHASE, step_fixed, count, out);
 }
 
-/* For maps that no stabilizer makes: every position on its own, NaN (an overflow) at the near end. */
+/* The same for maps that no stabilizer makes: every position by itself; NaN, from an overflow, becomes -FAR. */
 static inline void run_saturated(double start, double step, int u, int count, int32_t *out)
 {
     for (int i = 0; i < count; i++) {
@@ -54,30 +57,30 @@ static inline void run_saturated(double start, double step, int u, int count, in
     }
 }
 
-SPECIALIZED void run_axis(const double axis[3], int u, int v, int count, int32_t *out, RunFixed *run_fixed)
+L1L2_INLINE void run_axis(const double axis[3], int u, int v, int count, int32_t *out, RunFixed *run_fixed)
 {
     const double start = axis[1] * v + axis[2];
     if (fabs(start) <= FAR && fabs(axis[0]) <= MAX_STEP)
-        run_line(start, axis[0], u, count, out, run_fixed);
+        run_even_steps(start, axis[0], u, count, out, run_fixed);
     else
         run_saturated(start, axis[0], u, count, out);
 }
 
-SPECIALIZED void affine_run(const L1L2WarpAffine *affine, int u, int v, int count, int32_t *x, int32_t *y,
+L1L2_INLINE void affine_run(const L1L2WarpAffine *affine, int u, int v, int count, int32_t *x, int32_t *y,
                             RunFixed *run_fixed)
 {
     run_axis(affine->x, u, v, count, x, run_fixed);
     run_axis(affine->y, u, v, count, y, run_fixed);
 }
 
-SPECIALIZED double saturate(double at)
+L1L2_INLINE double saturate(double at)
 {
     const double near = at < FAR ? at : FAR;
     return near > -FAR ? near : -FAR;
 }
 
-/* A mesh's row of cells, cut at an output row: one coordinate of the cuts' ends, in samples of the source plane. */
-SPECIALIZED void cut_cells(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int v, double *x, double *y)
+/* Where output row v crosses the sides of the cells: positions in samples of the source plane, [cells->count + 1]. */
+L1L2_INLINE void cut_cells(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int v, double *x, double *y)
 {
     const L1L2WarpMesh *mesh = plane->mesh;
     const L1L2WarpGrid *dst = &plane->dst, *src = &plane->src;
@@ -93,8 +96,8 @@ SPECIALIZED void cut_cells(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *
     }
 }
 
-/* One axis, by its coordinate at the cells' sides. */
-SPECIALIZED void run_cells(const L1L2WarpCells *cells, const double *side, int32_t *out, RunFixed *run_fixed)
+/* Writes one coordinate of the positions, given its values at the cells' sides. */
+L1L2_INLINE void run_cells(const L1L2WarpCells *cells, const double *side, int32_t *out, RunFixed *run_fixed)
 {
     uint64_t at[L1L2_WARP_MAX_CELLS], step[L1L2_WARP_MAX_CELLS];
     for (int k = 0; k < cells->count; k++) {
@@ -107,7 +110,7 @@ SPECIALIZED void run_cells(const L1L2WarpCells *cells, const double *side, int32
         run_fixed(at[k], step[k], cells->from[k + 1] - cells->from[k], out + cells->from[k]);
 }
 
-SPECIALIZED void mesh_run(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int v, int32_t *x, int32_t *y,
+L1L2_INLINE void mesh_run(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int v, int32_t *x, int32_t *y,
                           RunFixed *run_fixed)
 {
     double side_x[L1L2_WARP_MAX_CELLS + 1], side_y[L1L2_WARP_MAX_CELLS + 1];
@@ -116,8 +119,8 @@ SPECIALIZED void mesh_run(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *c
     run_cells(cells, side_y, y, run_fixed);
 }
 
-/* From run_fixed() the generators. */
-#define DEFINE_GENERATORS(name)                                                                                       \
+/* Compiles the generators around run_fixed(), and defines the function init() that puts them into the table. */
+#define DEFINE_GENERATORS(init)                                                                                       \
     static void run_affine(const L1L2WarpAffine *affine, int u, int v, int count, int32_t *x, int32_t *y)             \
     {                                                                                                                 \
         affine_run(affine, u, v, count, x, y, run_fixed);                                                             \
@@ -126,6 +129,9 @@ SPECIALIZED void mesh_run(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *c
     {                                                                                                                 \
         mesh_run(plane, cells, v, x, y, run_fixed);                                                                   \
     }                                                                                                                 \
-    const L1L2WarpGenerators name = {run_affine, run_mesh};
+    void init(L1L2WarpFunctions *functions)                                                                           \
+    {                                                                                                                 \
+        functions->generators = (L1L2WarpGenerators){run_affine, run_mesh};                                           \
+    }
 
 #endif

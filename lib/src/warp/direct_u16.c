@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Plain C. Right shifts of negative numbers are taken to be arithmetic, as all compilers in use have it. */
+/* Samples of 9 to 16 bits in plain C. */
 #include "warp/direct_u16.h"
 
 #include <string.h>
@@ -18,8 +18,9 @@ static inline int clamp(int value, int low, int high)
     return value < low ? low : value > high ? high : value;
 }
 
-/* Numbers are cut to 16 bits as AVX2 has them: that matters only where a component has bits above its depth. */
-SPECIALIZED int weigh_row(const uint8_t *row, const ptrdiff_t *col, const int16_t *wx, int shift, const int bias,
+/* The sum of one row's taps. Samples are cut to 16 bits as in AVX2, which matters only for components with bits set
+ * above their depth. */
+L1L2_INLINE int weigh_row(const uint8_t *row, const ptrdiff_t *col, const int16_t *wx, int shift, const int bias,
                           const int taps)
 {
     int sum = 0;
@@ -28,8 +29,8 @@ SPECIALIZED int weigh_row(const uint8_t *row, const ptrdiff_t *col, const int16_
     return sum;
 }
 
-/* One component. row[r]: row r of the taps; col[k]: bytes to tap k in it. */
-SPECIALIZED int weigh_narrow(const L1L2WarpPlane *src, const uint8_t *const *row, const ptrdiff_t *col,
+/* One component of a sample. row[r]: row r of the taps; col[k]: bytes from there to tap k. */
+L1L2_INLINE int weigh_narrow(const L1L2WarpPlane *src, const uint8_t *const *row, const ptrdiff_t *col,
                              const int16_t *wx, const int16_t *wy, const int taps)
 {
     int sum = l1l2_warp_direct_u16_narrow_round(src->depth);
@@ -38,7 +39,7 @@ SPECIALIZED int weigh_narrow(const L1L2WarpPlane *src, const uint8_t *const *row
     return sum >> l1l2_warp_direct_u16_narrow_shift(src->depth);
 }
 
-SPECIALIZED int weigh_wide(const L1L2WarpPlane *src, const uint8_t *const *row, const ptrdiff_t *col,
+L1L2_INLINE int weigh_wide(const L1L2WarpPlane *src, const uint8_t *const *row, const ptrdiff_t *col,
                            const int16_t *wx, const int16_t *wy, const int taps)
 {
     int upper = L1L2_WARP_DIRECT_U16_ROUND, lower = 0;
@@ -52,7 +53,7 @@ SPECIALIZED int weigh_wide(const L1L2WarpPlane *src, const uint8_t *const *row, 
            L1L2_WARP_DIRECT_U16_BIAS;
 }
 
-SPECIALIZED void sample(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int32_t x, int32_t y, uint8_t *dst,
+L1L2_INLINE void sample(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int32_t x, int32_t y, uint8_t *dst,
                         const int taps, const int components, const int wide)
 {
     const int stride = l1l2_warp_kernel_stride(taps), lead = taps / 2 - 1;
@@ -73,20 +74,16 @@ SPECIALIZED void sample(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, 
     }
 }
 
-SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
+L1L2_INLINE void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
                      int count, uint8_t *dst, const int taps, const int components, const int wide)
 {
     for (int i = 0; i < count; i++)
         sample(src, kernel, x[i], y[i], dst + 2 * components * i, taps, components, wide);
 }
 
-DEFINE_RUNS(l1l2_warp_direct_u16_run_plain)
+DEFINE_RUNS(, l1l2_warp_direct_u16_plain)
 
-L1L2WarpRun *l1l2_warp_direct_u16_run(int taps, int components, int depth)
+void l1l2_warp_direct_u16_init(L1L2WarpFunctions *functions)
 {
-#ifdef L1L2_WARP_AVX2
-    if (__builtin_cpu_supports("avx2"))
-        return l1l2_warp_direct_u16_run_avx2(taps, components, depth);
-#endif
-    return l1l2_warp_direct_u16_run_plain(taps, components, depth);
+    functions->direct_u16 = l1l2_warp_direct_u16_plain;
 }

@@ -1,15 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The warp's sample type of 9 to 16 bits in two bytes, the low one first. Fixed point, rows first, as warp_u8.h has it,
- * and again every implementation does exactly this:
+ * The sample type of 9 to 16 bits in two bytes, the low byte first: weighs the taps around given positions, sample by
+ * sample.
  *
- * Narrow, to 12 bits: a row of taps sums to depth + 14 bits and is cut to 14 - depth fractional bits, so it fits 16
- * bits with its overshoot. The column's sum has 28 - depth and is rounded once.
+ * Fixed point, along the rows first. The positive weights of a kernel sum to at most 1.275 (Lanczos), the |weights| to
+ * G = 1.55. Every implementation does exactly this, so all give the same bytes.
  *
- * Wide, 16 bits: samples are taken less 2^15, so that they have a sign and fit. A row is cut to 7 fractional bits; its
- * upper part (unit 2) and its lower one (unit 1/128) are weighed by themselves, to 13 fractional bits together.
+ * Narrow, depth up to 12 bits. A row of taps sums to depth + 14 bits. It is cut to 14 - depth fractional bits, so it is
+ * below 2^14 * 1.275 = 20890 and fits 16 bits. The column's sum has 14 - depth + 14 = 28 - depth fractional bits, stays
+ * below 20890 * 2^14 * G = 0.54e9, and is rounded once.
  *
- * The cuts cost a small part of a level: 1/16 of a 10-bit one at most, 1/5 of a 12-bit one, 1/50 of a 16-bit one.
+ * Wide, depth 16 bits. 2^15 is subtracted from samples, so that they fit 16 bits with a sign. A row's sum is below
+ * 2^15 * 2^14 * G = 0.84e9. It is cut to 7 fractional bits, 24 bits with the sign, and taken apart: the upper part has
+ * the unit 2 and is below 2^15 * G / 2 = 25396 in size, the lower part has 8 bits of the unit 1/128. The parts are
+ * weighed separately and added with 13 fractional bits: below 25396 * 2^14 * G = 0.65e9.
+ *
+ * What the cuts cost at most: 1/16 of a level of 10 bits, 1/5 of one of 12 bits, 1/50 of one of 16 bits.
  */
 #ifndef L1L2_WARP_DIRECT_U16_H
 #define L1L2_WARP_DIRECT_U16_H
@@ -17,16 +23,16 @@
 #include "warp/sample.h"
 
 enum {
-    L1L2_WARP_DIRECT_U16_NARROW = 12, /* the largest depth */
+    L1L2_WARP_DIRECT_U16_NARROW = 12, /* the largest narrow depth */
     L1L2_WARP_DIRECT_U16_BIAS = 1 << 15,
     L1L2_WARP_DIRECT_U16_ROW_SHIFT = L1L2_WARP_WEIGHT_BITS - 7,
-    L1L2_WARP_DIRECT_U16_PART_BITS = 8, /* of a wide row, the lower part */
+    L1L2_WARP_DIRECT_U16_PART_BITS = 8, /* of a wide row's lower part */
     L1L2_WARP_DIRECT_U16_SHIFT = L1L2_WARP_WEIGHT_BITS - 1,
-    /* One half of the result's unit, and one half of what a row's cut takes off. */
+    /* One half of the result's unit; and one half of a row's unit, which is what a cut takes off in the mean. */
     L1L2_WARP_DIRECT_U16_ROUND = (1 << (L1L2_WARP_DIRECT_U16_SHIFT - 1)) + (1 << (L1L2_WARP_DIRECT_U16_SHIFT - 8))
 };
 
-/* The same for narrow samples of that depth. */
+/* The same two numbers for narrow samples. */
 static inline int l1l2_warp_direct_u16_narrow_shift(int depth)
 {
     return 2 * L1L2_WARP_WEIGHT_BITS - depth;
@@ -37,14 +43,11 @@ static inline int l1l2_warp_direct_u16_narrow_round(int depth)
     return (1 << (l1l2_warp_direct_u16_narrow_shift(depth) - 1)) + (1 << (L1L2_WARP_WEIGHT_BITS - 1));
 }
 
-/* For a kernel of 2, 4 or 6 taps, 1, 2 or 4 interleaved components and a depth of 9..12 or 16 bits: the fastest that
- * this processor has. */
-L1L2WarpRun *l1l2_warp_direct_u16_run(int taps, int components, int depth);
+typedef struct L1L2WarpDirectU16Runs {
+    L1L2WarpDirectRun *run[2][3][3]; /* [0 narrow, 1 wide][taps / 2 - 1][components / 2]: 1, 2 or 4 components */
+} L1L2WarpDirectU16Runs;
 
-/* Plain C, for every processor. */
-L1L2WarpRun *l1l2_warp_direct_u16_run_plain(int taps, int components, int depth);
-
-/* There only where the build defines L1L2_WARP_AVX2, and for processors that have it. */
-L1L2WarpRun *l1l2_warp_direct_u16_run_avx2(int taps, int components, int depth);
+/* In plain C. SIMD code uses them at the edges of a plane. */
+extern const L1L2WarpDirectU16Runs l1l2_warp_direct_u16_plain;
 
 #endif

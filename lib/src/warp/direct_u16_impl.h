@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* For the implementations of warp_u16.h: one body for every number of taps and components, narrow and wide. */
+/* For the implementations of direct_u16.h: the macro that compiles one body for every number of taps and components,
+ * narrow and wide. */
 #ifndef L1L2_WARP_DIRECT_U16_IMPL_H
 #define L1L2_WARP_DIRECT_U16_IMPL_H
 
-#include <stdbool.h>
-
-#include "warp/direct_u16.h"
+#include "warp/functions.h"
 
 #define DEFINE_RUN(taps, components, wide)                                                                            \
     static void run_##taps##_##components##_##wide(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel,            \
@@ -13,20 +12,19 @@
     {                                                                                                                 \
         run(src, kernel, x, y, count, dst, taps, components, wide);                                                   \
     }
-#define DEFINE_RUNS_OF(taps, wide)                                                                                    \
-    DEFINE_RUN(taps, 1, wide) DEFINE_RUN(taps, 2, wide) DEFINE_RUN(taps, 4, wide)
+#define DEFINE_RUNS_OF(taps, wide) DEFINE_RUN(taps, 1, wide) DEFINE_RUN(taps, 2, wide) DEFINE_RUN(taps, 4, wide)
 #define RUNS_OF(taps, wide) {run_##taps##_1_##wide, run_##taps##_2_##wide, run_##taps##_4_##wide}
 
-/* From run(src, kernel, x, y, count, dst, taps, components, wide) the function that looks its versions up. */
-#define DEFINE_RUNS(name)                                                                                              \
-    DEFINE_RUNS_OF(2, 0)                                                                                               \
-    DEFINE_RUNS_OF(4, 0) DEFINE_RUNS_OF(6, 0) DEFINE_RUNS_OF(2, 1) DEFINE_RUNS_OF(4, 1) DEFINE_RUNS_OF(6, 1)           \
-        L1L2WarpRun *                                                                                                  \
-        name(int taps, int components, int depth)                                                                      \
-    {                                                                                                                  \
-        static L1L2WarpRun *const runs[2][3][3] = {{RUNS_OF(2, 0), RUNS_OF(4, 0), RUNS_OF(6, 0)},                      \
-                                                   {RUNS_OF(2, 1), RUNS_OF(4, 1), RUNS_OF(6, 1)}};                     \
-        return runs[depth > L1L2_WARP_DIRECT_U16_NARROW][taps / 2 - 1][components / 2];                                \
-    }
+/* Compiles run(src, kernel, x, y, count, dst, taps, components, wide) for each number of taps and components, and
+ * defines a constant with these eighteen. `storage`: static, or nothing. */
+#define DEFINE_RUNS(storage, name)                                                                                    \
+    DEFINE_RUNS_OF(2, 0)                                                                                              \
+    DEFINE_RUNS_OF(4, 0)                                                                                              \
+    DEFINE_RUNS_OF(6, 0)                                                                                              \
+    DEFINE_RUNS_OF(2, 1)                                                                                              \
+    DEFINE_RUNS_OF(4, 1)                                                                                              \
+    DEFINE_RUNS_OF(6, 1)                                                                                              \
+    storage const L1L2WarpDirectU16Runs name = {                                                                      \
+        {{RUNS_OF(2, 0), RUNS_OF(4, 0), RUNS_OF(6, 0)}, {RUNS_OF(2, 1), RUNS_OF(4, 1), RUNS_OF(6, 1)}}};
 
 #endif

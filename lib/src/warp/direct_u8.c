@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Right shifts of negative numbers are taken to be arithmetic, as all compilers in use have it. */
 #include "warp/direct_u8.h"
+
+#include "warp/functions.h"
 
 static inline uint8_t clamp_u8(int value)
 {
     return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
 }
 
-SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
+L1L2_INLINE void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
                      int count, uint8_t *dst, const int components)
 {
     const int taps = kernel->taps, lead = taps / 2 - 1;
@@ -44,8 +45,8 @@ DEFINE_RUN(2)
 DEFINE_RUN(3)
 DEFINE_RUN(4)
 
-L1L2WarpRun *l1l2_warp_direct_u8_run(int components)
+void l1l2_warp_direct_u8_init(L1L2WarpFunctions *functions)
 {
-    static L1L2WarpRun *const runs[] = {run_1, run_2, run_3, run_4};
-    return runs[components - 1];
+    functions->direct_u8[0] = run_1, functions->direct_u8[1] = run_2;
+    functions->direct_u8[2] = run_3, functions->direct_u8[3] = run_4;
 }

@@ -1,12 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* Cubic: Keys, "Cubic convolution interpolation for digital image processing", 1981, eq. (8), with a = -0.75: it loses
- * 3-15 % of the gradients' energy at the worst phase where a = -0.5 loses 12-28 %, so sharpness pulses less. Its
- * weights are defined by few operations on words: vectors of phases take these faster than they look up the table. */
+/*
+ * The three kernels.
+ *
+ * Bicubic is Keys, "Cubic convolution interpolation for digital image processing", 1981, eq. (8), with a = -0.75. At
+ * the worst phase it loses 3-15 % of the gradients' energy where a = -0.5 loses 12-28 %, so sharpness pulses less. Its
+ * weights are defined by a few operations on words: SIMD code computes them faster than it looks them up.
+ *
+ * Lanczos has three lobes, sinc(x) sinc(x / 3), with the weights of each phase normalized to the sum 1.
+ */
 #include "warp/kernel.h"
 
 #include <math.h>
 
-static double weigh_linear(double x)
+static double weigh_bilinear(double x)
 {
     return fmax(0.0, 1.0 - fabs(x));
 }
@@ -21,14 +27,14 @@ static double weigh_lanczos3(double x)
 
 static const struct {
     int taps;
-    double (*weigh)(double x); /* x: samples from the position to the tap. NULL: set_cubic() */
+    double (*weigh)(double x); /* x: samples from the position to the tap. NULL: see set_cubic() */
 } shapes[] = {
-    [L1L2STAB_INTERPOLATION_BILINEAR] = {2, weigh_linear},
+    [L1L2STAB_INTERPOLATION_BILINEAR] = {2, weigh_bilinear},
     [L1L2STAB_INTERPOLATION_BICUBIC] = {4, NULL},
     [L1L2STAB_INTERPOLATION_LANCZOS] = {6, weigh_lanczos3},
 };
 
-/* What rounding leaves over goes to the nearest tap. */
+/* Weights to integers with the exact sum: the nearest tap gets what rounding leaves over. */
 static void round_weights(const double *weight, int taps, int nearest, int16_t *out)
 {
     double sum = 0.0;
@@ -42,8 +48,17 @@ static void round_weights(const double *weight, int taps, int nearest, int16_t *
     out[nearest] = (int16_t)(out[nearest] + left);
 }
 
-/* With t the phase, n = 1 - t and q = t n: 0.75 (-q n), n - 0.25 q + 1.25 q n, and the same from the other side. No
- * weight is further than 2 / 16384 from the exact one. */
+/*
+ * The weights of the taps at -1, 0, 1, 2 from the sample left of a position with phase t. With n = 1 - t and q = t n,
+ * eq. (8) at the distances 1 + t and t is
+ *
+ *   a (t^3 - 2 t^2 + t)               =  -0.75 q n
+ *   (a + 2) t^3 - (a + 3) t^2 + 1     =  n - 0.25 q + 1.25 q n
+ *
+ * and the same with t and n exchanged from the other side. t, n and q have 15 fractional bits, weights 14, so halves of
+ * the constants stand below: 12288 / 2^15 = 0.75 / 2, 20480 / 2^15 = 1.25 / 2, 4096 / 2^15 = 0.25 / 2. No weight is
+ * further than 2 / 2^14 from the exact one.
+ */
 static void set_cubic(int phase, int16_t *out)
 {
     const int t = phase << (15 - L1L2_WARP_PHASE_BITS), n = (1 << 15) - t;

@@ -5,7 +5,8 @@
 
 enum { BAND_ROWS = 16 };
 
-/* split_*() and merge_*() of one row. The components' places in a pair are constants, for loops to be vectorized. */
+/* Defines split_*() and merge_*() for one row. The components' places in a pair are constants, so that the compiler
+ * vectorizes the loops. */
 #define DEFINE_LAYOUT(name, Y, U, V)                                                                                  \
     static void split_##name(const uint8_t *row, int width, uint8_t *restrict y, uint8_t *restrict u,                 \
                              uint8_t *restrict v)                                                                     \
@@ -101,7 +102,7 @@ static void do_band(void *context, int index)
 }
 
 void l1l2_warp_packed422_split(L1L2Pool *pool, const L1L2FormatInfo *packed, const uint8_t *data, ptrdiff_t stride,
-                            const L1L2WarpPlanes *planes)
+                               const L1L2WarpPlanes *planes)
 {
     Job job = {find_layout(packed), planes, data, NULL, stride};
     l1l2_pool_run(pool, (planes->height + BAND_ROWS - 1) / BAND_ROWS, do_band, &job);

@@ -1,14 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Renders runs of 8-bit samples by the lines that they take through the source (warp_coords.h), in two passes: down
- * each column to the value where the line crosses it, then along the line. Catmull and Smith, "3-D transformations of
- * images in scanline order" (1980), without their intermediate picture, and so without what it loses. A sample takes
- * 2 x taps products in place of taps x taps, and half of them read what lies side by side. The kernel is as if sheared
- * along the line.
+ * Renders runs of 8-bit samples along the scanlines that they follow through the source (coords.h), in two passes: down
+ * each source column to the value where the scanline crosses it, then along the scanline.
  *
- * Fixed point. Down: the sum over the taps of (sample - 128) * weight, each rounded to 7 fractional bits; with the
- * overshoot of any kernel here, below 1.6 times 128, that fits 16 bits. Along: sums of 21 fractional bits, rounded
- * once. Every implementation does exactly this, so all give the same bytes.
+ * Source: Catmull and Smith, "3-D transformations of images in scanline order", 1980. The intermediate picture of the
+ * paper is here a row of columns for each output row, so nothing is lost where the paper's picture shrinks. A sample
+ * takes 2 * taps products in place of taps * taps, and half of them read neighbors in memory. The kernel is sheared
+ * along the scanline.
+ *
+ * Fixed point. G is the largest sum of a kernel's |weights|, 1.55 for Lanczos, 1.375 for bicubic.
+ *
+ *   down   sum of (sample - 128) * weight, each product rounded to 7 fractional bits.
+ *          |sum| <= 128 * 2^7 * G + taps / 2 <= 25399: it fits 16 bits.
+ *   along  sum of value * weight, 7 + 14 = 21 fractional bits, rounded once, after 128 is added again.
+ *          |sum| <= 25399 * 2^14 * G + 2^28 + 2^20 < 0.92e9: it fits 32 bits.
+ *
+ * Rounding the products costs at most taps / 256 of a level for each column, taps * G / 256 in all: 0.04. Every
+ * implementation does exactly this, so all give the same bytes.
  */
 #ifndef L1L2_WARP_SCANLINE_U8_H
 #define L1L2_WARP_SCANLINE_U8_H
@@ -17,21 +25,11 @@
 
 enum {
     L1L2_WARP_SCANLINE_SHIFT = 7 + L1L2_WARP_WEIGHT_BITS,
-    L1L2_WARP_SCANLINE_ROUND =
-        (128 << L1L2_WARP_SCANLINE_SHIFT) + (1 << (L1L2_WARP_SCANLINE_SHIFT - 1)) /* 128 is put back */
+    L1L2_WARP_SCANLINE_ROUND = (128 << L1L2_WARP_SCANLINE_SHIFT) + (1 << (L1L2_WARP_SCANLINE_SHIFT - 1))
 };
 
-/* Writes line->count samples of all their components to dst; taps beyond the plane repeat its edge. */
-typedef void L1L2WarpScanlineRun(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpScanline *line,
-                             uint8_t *dst);
-
-/* For a kernel of 2, 4 or 6 taps and 1..4 interleaved components: the fastest that this processor has. */
-L1L2WarpScanlineRun *l1l2_warp_scanline_run(int taps, int components);
-
-/* Plain C, for every processor. */
-L1L2WarpScanlineRun *l1l2_warp_scanline_run_plain(int taps, int components);
-
-/* There only where the build defines L1L2_WARP_AVX2, and for processors that have it. */
-L1L2WarpScanlineRun *l1l2_warp_scanline_run_avx2(int taps, int components);
+/* Writes scanline->count samples with all their components to dst. Taps beyond the plane repeat its edge. */
+typedef void L1L2WarpScanlineRun(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel,
+                                 const L1L2WarpScanline *scanline, uint8_t *dst);
 
 #endif

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* For the implementations of warp_line.h: the passes in plain C; one body for every number of taps and components. */
+/* For the implementations of scanline_u8.h: the two passes in plain C, which SIMD code uses at the edges of a plane;
+ * and the macro that compiles one body for every number of taps and components. */
 #ifndef L1L2_WARP_SCANLINE_U8_IMPL_H
 #define L1L2_WARP_SCANLINE_U8_IMPL_H
 
-#include "warp/scanline_u8.h"
+#include "warp/functions.h"
 
-enum { LINE_VALUES = 4 * L1L2_WARP_SCANLINE_COLUMNS + 16 /* what is written together may overrun them */ };
+enum { SCANLINE_VALUES = 4 * L1L2_WARP_SCANLINE_COLUMNS + 16 /* room for a last vector */ };
 
-/* Columns from .. to - 1 of a line, all of this piece. */
-SPECIALIZED void down_plain(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int first_column,
+/* The pass down, for columns from .. to - 1 of a scanline, all of this piece. */
+L1L2_INLINE void down_plain(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int first_column,
                             const L1L2WarpPiece *piece, int from, int to, int16_t *values, const int taps,
                             const int components)
 {
@@ -28,8 +29,8 @@ SPECIALIZED void down_plain(const L1L2WarpPlane *src, const L1L2WarpKernel *kern
     }
 }
 
-/* Samples from .. to - 1 of a run, all of this piece. */
-SPECIALIZED void along_plain(const L1L2WarpKernel *kernel, const L1L2WarpPiece *piece, int from, int to,
+/* The pass along, for samples from .. to - 1 of a run, all of this piece. */
+L1L2_INLINE void along_plain(const L1L2WarpKernel *kernel, const L1L2WarpPiece *piece, int from, int to,
                              const int16_t *values, uint8_t *dst, const int taps, const int components)
 {
     for (int i = from; i < to; i++) {
@@ -46,30 +47,32 @@ SPECIALIZED void along_plain(const L1L2WarpKernel *kernel, const L1L2WarpPiece *
     }
 }
 
-/* Where the k-th of some pieces ends. */
+/* The entry at which the k-th piece ends. end: where the last one does. */
 static inline int end_of(const L1L2WarpPiece *piece, int k, int pieces, int end)
 {
     return k + 1 < pieces ? piece[k + 1].from : end;
 }
 
-#define DEFINE_RUN(taps, components)                                                                                   \
-    static void run_##taps##_##components(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel,                      \
-                                          const L1L2WarpScanline *line, uint8_t *dst)                                  \
-    {                                                                                                                  \
-        run(src, kernel, line, dst, taps, components);                                                                 \
+#define DEFINE_RUN(taps, components)                                                                                  \
+    static void run_##taps##_##components(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel,                     \
+                                          const L1L2WarpScanline *scanline, uint8_t *dst)                             \
+    {                                                                                                                 \
+        run(src, kernel, scanline, dst, taps, components);                                                            \
     }
 #define DEFINE_RUNS_OF(taps) DEFINE_RUN(taps, 1) DEFINE_RUN(taps, 2) DEFINE_RUN(taps, 3) DEFINE_RUN(taps, 4)
-#define RUNS_OF(taps) {run_##taps##_1, run_##taps##_2, run_##taps##_3, run_##taps##_4}
+#define SET_RUNS(runs, taps)                                                                                          \
+    runs[taps / 2 - 2][0] = run_##taps##_1, runs[taps / 2 - 2][1] = run_##taps##_2,                                   \
+                       runs[taps / 2 - 2][2] = run_##taps##_3, runs[taps / 2 - 2][3] = run_##taps##_4
 
-/* From run(src, kernel, line, dst, taps, components) and what two taps have of their own, the function that looks its
- * twelve versions up. */
-#define DEFINE_RUNS(name, linear)                                                                                      \
-    DEFINE_RUNS_OF(4)                                                                                                  \
-    DEFINE_RUNS_OF(6)                                                                                                  \
-    L1L2WarpScanlineRun *name(int taps, int components)                                                                \
-    {                                                                                                                  \
-        static L1L2WarpScanlineRun *const runs[2][4] = {RUNS_OF(4), RUNS_OF(6)};                                       \
-        return taps == 2 ? linear(components) : runs[taps / 2 - 2][components - 1];                                    \
+/* Compiles run(src, kernel, scanline, dst, taps, components) for each number of taps and components, and defines the
+ * function init() that puts these eight into the table. */
+#define DEFINE_RUNS(init)                                                                                             \
+    DEFINE_RUNS_OF(4)                                                                                                 \
+    DEFINE_RUNS_OF(6)                                                                                                 \
+    void init(L1L2WarpFunctions *functions)                                                                           \
+    {                                                                                                                 \
+        SET_RUNS(functions->scanline_u8, 4);                                                                          \
+        SET_RUNS(functions->scanline_u8, 6);                                                                          \
     }
 
 #endif

@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT */
+/* The area scaler against means in floating point and exact integers, and SIMD against plain C. */
 #include <math.h>
 #include <string.h>
 
 #include "checkx.h"
+#include "common/cpu.h"
 #include "common/rng.h"
 #include "image/area_scale.h"
 #include "image/area_scale_row.h"
 
 enum { PAD = 24, GUARD = 0xA5 };
 
-/* A plane of noise, its rows PAD bytes apart, and what a scaler makes of it, guarded on its right. */
+/* A plane of noise with PAD bytes between its rows, and the scaler's output with guard bytes on its right. */
 typedef struct Trial {
     const L1L2FormatInfo *format;
     int width, height, out_width, out_height;
@@ -28,7 +30,7 @@ static Trial trial_new(L1L2StabFormat format, int width, int height, int out_wid
     L1L2Rng rng = l1l2_rng_seeded((uint64_t)(width * height));
     const uint32_t highest = (1u << t.format->depth) - 1;
     for (ptrdiff_t i = 0; i < t.stride * height / l1l2_image_format_bytes(t.format); i++) {
-        /* Dark, bright and anything: a third of each. */
+        /* A third each: dark, bright, any level. */
         const uint32_t any = l1l2_rng_below(&rng, highest + 1), kind = l1l2_rng_below(&rng, 3);
         const uint32_t level = (kind == 0 ? any & 3 : kind == 1 ? highest - (any & 3) : any) << t.format->shift;
         if (l1l2_image_format_bytes(t.format) == 1)
@@ -61,7 +63,7 @@ static uint32_t sample(const Trial *t, int x, int y, int component)
     return l1l2_image_format_bytes(t->format) == 1 ? row[i] : ((const uint16_t *)(const void *)row)[i];
 }
 
-/* Grey, in units of 8 bits. */
+/* A pixel's grey level, in units of 8 bits. */
 static double grey(const Trial *t, int x, int y)
 {
     double sum = 0.0;
@@ -134,7 +136,7 @@ START_TEST(packed_components_are_mixed_as_well)
 }
 END_TEST
 
-/* By integers alone: sums of parts, halves rounded up. */
+/* The expected mean is computed in integers alone: sums of parts, halves rounded up. */
 START_TEST(factors_of_few_parts_are_exact)
 {
     static const int factors[][2] = {{2, 1}, {3, 1}, {4, 1}, {5, 1}, {6, 1}, {8, 1}, {12, 1}, {4, 3}, {9, 8}, {5, 2}};
@@ -228,30 +230,61 @@ START_TEST(rows_may_run_bottom_up)
 }
 END_TEST
 
-START_TEST(this_processor_sums_as_plain_c_does)
+/* Planes of two bytes a component at odd addresses, in rows an odd number of bytes apart. The sanitizer sees a
+ * misaligned load, which other processors could not do. */
+START_TEST(deep_pictures_may_have_any_alignment)
+{
+    static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_I420_10LE, L1L2STAB_FORMAT_P010_10LE,
+                                             L1L2STAB_FORMAT_GRAY16_LE, L1L2STAB_FORMAT_RGBA64_LE};
+    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
+        Trial even = trial_new(formats[k], 101, 57, 40, 23), odd = even;
+        uint8_t *const memory = malloc((size_t)(even.stride + 1) * (size_t)even.height + 1);
+        odd.out = malloc((size_t)even.out_stride * (size_t)even.out_height);
+        ck_assert(memory && odd.out);
+        memset(odd.out, GUARD, (size_t)even.out_stride * (size_t)even.out_height);
+        odd.data = memory + ((uintptr_t)memory % 2 == 0);
+        odd.stride = even.stride + 1;
+        for (int y = 0; y < even.height; y++)
+            memcpy(odd.data + odd.stride * y, even.data + even.stride * y, (size_t)(even.stride - PAD));
+        run(&even);
+        run(&odd);
+        ck_assert_mem_eq(even.out, odd.out, (size_t)even.out_stride * (size_t)even.out_height);
+        odd.data = memory;
+        trial_free(&odd);
+        trial_free(&even);
+    }
+}
+END_TEST
+
+/* The extremes: samples of 15 bits, weights of up to 16 bits in sum. */
+START_TEST(every_processor_gives_the_sums_of_plain_c)
 {
     enum { SAMPLES = 200, TAPS = 28, COUNT = 40 };
     int16_t samples[SAMPLES + TAPS], weight[COUNT * TAPS];
-    int32_t first[COUNT], plain[COUNT], fast[COUNT];
+    int32_t first[COUNT], plain_sums[COUNT], sums[COUNT];
+    L1L2AreaScaleFunctions plain, functions;
+    l1l2_image_scale_functions_init(&plain, L1L2_CPU_PLAIN);
+    l1l2_image_scale_functions_init(&functions, l1l2_cpu_features());
     L1L2Rng rng = l1l2_rng_seeded(7);
     for (int i = 0; i < SAMPLES + TAPS; i++)
         samples[i] = (int16_t)(i % 3 == 0 ? INT16_MAX : (int)l1l2_rng_below(&rng, INT16_MAX + 1));
-    for (int taps = 4; taps <= TAPS; taps += 4) {
-        for (int i = 0; i < COUNT * taps; i++) /* of an output's weights the sum is 16 bits at most */
-            weight[i] = (int16_t)l1l2_rng_below(&rng, UINT16_MAX / (uint32_t)taps);
-        for (int i = 0; i < COUNT; i++)
-            first[i] = (int32_t)l1l2_rng_below(&rng, SAMPLES);
-        l1l2_image_scale_row_plain(samples, first, weight, taps, COUNT, plain);
-        l1l2_image_scale_row(samples, first, weight, taps, COUNT, fast);
-        ck_assert_mem_eq(plain, fast, sizeof plain);
-    }
+    for (int taps = 4; taps <= TAPS; taps += 4)
+        for (int count = 4; count <= COUNT; count += 4) {
+            for (int i = 0; i < count * taps; i++)
+                weight[i] = (int16_t)l1l2_rng_below(&rng, UINT16_MAX / (uint32_t)taps);
+            for (int i = 0; i < count; i++)
+                first[i] = (int32_t)l1l2_rng_below(&rng, SAMPLES);
+            plain.row(samples, first, weight, taps, count, plain_sums);
+            functions.row(samples, first, weight, taps, count, sums);
+            ck_assert_mem_eq(sums, plain_sums, (size_t)count * sizeof *sums);
+        }
 }
 END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("scale");
-    TCase *tc = tcase_create("scale");
+    Suite *suite = suite_create("area scaler");
+    TCase *tc = tcase_create("area scaler");
     tcase_set_timeout(tc, 60);
     tcase_add_loop_test(tc, one_component_is_the_mean_of_its_area_rounded_once, 0, SIZES);
     tcase_add_loop_test(tc, packed_components_are_mixed_as_well, 0, SIZES);
@@ -260,7 +293,8 @@ int main(void)
     tcase_add_test(tc, bytes_and_the_same_levels_in_ten_bits_give_the_same_picture);
     tcase_add_test(tc, samples_above_their_depth_saturate);
     tcase_add_test(tc, rows_may_run_bottom_up);
-    tcase_add_test(tc, this_processor_sums_as_plain_c_does);
+    tcase_add_test(tc, deep_pictures_may_have_any_alignment);
+    tcase_add_test(tc, every_processor_gives_the_sums_of_plain_c);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);
 }

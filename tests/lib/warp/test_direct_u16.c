@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* What this processor runs against plain C, and both against exact arithmetic. Where the former is plain C itself, the
- * first two tests compare it with itself. */
+/* Samples of 9 to 16 bits: their bytes on this processor against those of plain C, and both against exact arithmetic.
+ * Without AVX2, the first two tests compare plain C with itself. */
 #include "warp/direct_u16.h"
 #include "warp/warp_runs.h"
+#include "warp/warp_tables.h"
+
+static L1L2WarpFunctions functions, plain_table; /* of this processor, and plain C */
 
 static const int depths[][2] = {{9, 0}, {10, 0}, {12, 0}, {10, 6}, {12, 4}, {16, 0}}; /* and shift */
 
@@ -10,8 +13,8 @@ enum { DEPTHS = sizeof depths / sizeof depths[0] };
 
 static RunPair pair_of(const L1L2WarpKernel *kernel, int components, const int depth[2])
 {
-    return (RunPair){l1l2_warp_direct_u16_run(kernel->taps, components, depth[0]),
-                     l1l2_warp_direct_u16_run_plain(kernel->taps, components, depth[0]), components, depth[0],
+    return (RunPair){l1l2_warp_direct_run(&functions, kernel->taps, components, depth[0]),
+                     l1l2_warp_direct_run(&plain_table, kernel->taps, components, depth[0]), components, depth[0],
                      depth[1]};
 }
 
@@ -76,7 +79,7 @@ static int level(const uint8_t *at, int shift)
     return value >> shift;
 }
 
-/* The sum over the taps in doubles, with the kernel's own weights. Inside alone. */
+/* The sum over the taps in doubles, with the kernel's own weights. All taps must be inside. */
 static double exact(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int32_t x, int32_t y)
 {
     const int16_t *wx = kernel->weights + x % ONE * kernel->stride, *wy = kernel->weights + y % ONE * kernel->stride;
@@ -90,8 +93,8 @@ static double exact(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int3
     return fmin(fmax(sum, 0.0), (1 << src->depth) - 1);
 }
 
-/* Rounding alone would be 1/2 at most, and half-way values may go either way. */
-START_TEST(arithmetic_costs_next_to_nothing)
+/* Rounding alone costs at most 1/2, and half-way values may go either way. */
+START_TEST(the_arithmetic_is_exact_to_a_small_part_of_a_level)
 {
     static L1L2WarpKernel kernel;
     l1l2_warp_kernel_init(&kernel, (L1L2StabInterpolation)_i);
@@ -119,7 +122,7 @@ START_TEST(arithmetic_costs_next_to_nothing)
 }
 END_TEST
 
-/* Black and white next to each other: the overshoot must be cut off at both ends of the depth, not wrap around. */
+/* Black beside white: the overshoot must be cut off at both ends of the depth, not wrap around. */
 START_TEST(overshoot_is_cut_off)
 {
     static L1L2WarpKernel kernel;
@@ -170,12 +173,13 @@ END_TEST
 
 int main(void)
 {
+    functions = fast_functions(), plain_table = plain_functions();
     Suite *suite = suite_create("warp, 16 bits");
     TCase *tc = tcase_create("u16");
     tcase_add_loop_test(tc, every_processor_gives_the_bytes_of_plain_c, 0, 3);
     tcase_add_loop_test(tc, every_phase_gives_the_bytes_of_plain_c, 0, 3);
     tcase_add_loop_test(tc, bits_above_the_depth_do_no_harm, 0, 3);
-    tcase_add_loop_test(tc, arithmetic_costs_next_to_nothing, 0, 3);
+    tcase_add_loop_test(tc, the_arithmetic_is_exact_to_a_small_part_of_a_level, 0, 3);
     tcase_add_loop_test(tc, overshoot_is_cut_off, 0, 3);
     tcase_add_loop_test(tc, phase_0_copies, 0, 3);
     suite_add_tcase(suite, tc);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Meshes: what they are, their positions, and pictures warped by them against a floating-point warp. */
+/* Meshes: their nodes, their positions, and pictures warped by them against a floating-point warp. */
 #include "warp/coords.h"
 #include "warp/warp_reference.h"
+#include "warp/warp_tables.h"
 
 enum { PHASES = L1L2_WARP_PHASES, SLACK = L1L2_WARP_RUN_SLACK };
 
@@ -20,7 +21,7 @@ static L1L2WarpMeshPlane luma_of(const L1L2WarpMesh *mesh, int in_width, int in_
                                l1l2_warp_grid(grey, 0, 0, in_width, in_height)};
 }
 
-/* Run after run; x and y have SLACK entries more than count. */
+/* Positions of several runs. x and y have SLACK entries more than count. */
 static void run_by(const L1L2WarpGenerators *generators, const L1L2WarpMeshPlane *plane, int u, int v, int count,
                    int32_t *x, int32_t *y)
 {
@@ -33,10 +34,11 @@ static void run_by(const L1L2WarpGenerators *generators, const L1L2WarpMeshPlane
 
 static void run(const L1L2WarpMeshPlane *plane, int u, int v, int count, int32_t *x, int32_t *y)
 {
-    run_by(l1l2_warp_generators(), plane, u, v, count, x, y);
+    const L1L2WarpFunctions functions = fast_functions();
+    run_by(&functions.generators, plane, u, v, count, x, y);
 }
 
-/* As a stabilizer with rolling shutter has them: each row of nodes goes by a homography of its own. */
+/* A mesh as for rolling shutter: each row of nodes follows a homography of its own. */
 static L1L2WarpMesh random_mesh(L1L2Rng *rng, int width, int height)
 {
     L1L2WarpMesh mesh;
@@ -84,7 +86,7 @@ START_TEST(the_mesh_of_an_affine_map_has_its_positions)
         const L1L2WarpAffine affine = l1l2_warp_affine(&map, &plane.dst, &plane.src);
         int differing = 0, furthest = 0;
         for (int v = 0; v < HEIGHT; v++) {
-            l1l2_warp_generators()->affine(&affine, 0, v, WIDTH, x, y);
+            fast_functions().generators.affine(&affine, 0, v, WIDTH, x, y);
             run(&plane, 0, v, WIDTH, mesh_x, mesh_y);
             for (int u = 0; u < WIDTH; u++) {
                 const int off = abs(mesh_x[u] - x[u]) | abs(mesh_y[u] - y[u]);
@@ -131,8 +133,9 @@ START_TEST(positions_depend_neither_on_where_a_run_begins_nor_on_the_processor)
     for (size_t k = 0; k < sizeof widths / sizeof widths[0]; k++) {
         L1L2WarpMesh mesh = random_mesh(&rng, widths[k], 40);
         const L1L2WarpMeshPlane plane = luma_of(&mesh, 500, 300);
+        const L1L2WarpFunctions plain = plain_functions();
         for (int v = 0; v < 40; v += 13) {
-            run_by(&l1l2_warp_generators_plain, &plane, 0, v, widths[k], part_x, part_y);
+            run_by(&plain.generators, &plane, 0, v, widths[k], part_x, part_y);
             run(&plane, 0, v, widths[k], x, y);
             ck_assert_mem_eq(part_x, x, (size_t)widths[k] * sizeof *x);
             ck_assert_mem_eq(part_y, y, (size_t)widths[k] * sizeof *y);

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* The warp's parts by themselves: kernels, coordinate generators. */
+/* The warp's parts alone: kernels, tables of inner loops, coordinate generators. */
 #include "checkx.h"
 #include "common/rng.h"
 #include "warp/coords.h"
 #include "warp/kernel.h"
+#include "warp/warp_tables.h"
 
 enum { SLACK = L1L2_WARP_RUN_SLACK };
+
+static L1L2WarpFunctions functions, plain; /* of this processor, and plain C */
 
 /* The loop tests' index is the interpolation. */
 START_TEST(weights_sum_to_one_in_every_phase)
@@ -42,7 +45,26 @@ START_TEST(weights_are_the_same_from_both_sides)
 }
 END_TEST
 
-/* warp_u8.h keeps a row's sum in 16 bits. */
+/* The bounds that all analyses of fixed point start from, with a margin for the rounding of weights. */
+START_TEST(weights_stay_within_the_bounds_of_the_fixed_point_analyses)
+{
+    static const double bounds[] = {[L1L2STAB_INTERPOLATION_BILINEAR] = 1.0,
+                                    [L1L2STAB_INTERPOLATION_BICUBIC] = 1.375,
+                                    [L1L2STAB_INTERPOLATION_LANCZOS] = 1.55};
+    static L1L2WarpKernel kernel;
+    l1l2_warp_kernel_init(&kernel, (L1L2StabInterpolation)_i);
+    for (int phase = 0; phase < L1L2_WARP_PHASES; phase++) {
+        int positive = 0, negative = 0;
+        for (int k = 0; k < kernel.taps; k++) {
+            const int weight = kernel.weights[phase * kernel.stride + k];
+            *(weight > 0 ? &positive : &negative) += weight;
+        }
+        ck_assert_int_le(positive - negative, (int)(bounds[_i] * L1L2_WARP_ONE) + kernel.taps);
+    }
+}
+END_TEST
+
+/* Those of direct_u8.h: a row's sum with 6 fractional bits. */
 START_TEST(a_row_of_bytes_fits_16_bits_however_it_overshoots)
 {
     static L1L2WarpKernel kernel;
@@ -56,6 +78,22 @@ START_TEST(a_row_of_bytes_fits_16_bits_however_it_overshoots)
         }
         ck_assert_int_le(high >> (L1L2_WARP_WEIGHT_BITS - 6), INT16_MAX);
         ck_assert_int_ge(low >> (L1L2_WARP_WEIGHT_BITS - 6), INT16_MIN);
+    }
+}
+END_TEST
+
+START_TEST(every_table_is_full)
+{
+    const L1L2WarpFunctions *const tables[] = {&functions, &plain};
+    for (int t = 0; t < 2; t++) {
+        ck_assert(tables[t]->generators.affine && tables[t]->generators.mesh);
+        for (int taps = 2; taps <= 6; taps += 2)
+            for (int components = 1; components <= 4; components++) {
+                ck_assert(l1l2_warp_scanline_run(tables[t], taps, components) != NULL);
+                ck_assert(l1l2_warp_direct_run(tables[t], taps, components, 8) != NULL);
+                for (int depth = 10; depth <= 16 && components != 3; depth += 6)
+                    ck_assert(l1l2_warp_direct_run(tables[t], taps, components, depth) != NULL);
+            }
     }
 }
 END_TEST
@@ -90,7 +128,7 @@ START_TEST(halved_planes_have_their_samples_at_their_site)
 }
 END_TEST
 
-/* Over the longest row there can be; 2^-19 px is what the rounding of the step adds up to. */
+/* Over the longest row there can be. The rounding of the step adds up to 2^-19 px. */
 START_TEST(positions_are_the_maps_to_half_a_phase)
 {
     enum { COUNT = 16384 };
@@ -105,7 +143,7 @@ START_TEST(positions_are_the_maps_to_half_a_phase)
         affine.x[2] = l1l2_rng_next(&rng) / 1048576.0;
         affine.y[2] = l1l2_rng_next(&rng) / 1048576.0;
         const int v = (int)l1l2_rng_below(&rng, COUNT);
-        l1l2_warp_generators()->affine(&affine, 0, v, COUNT, x, y);
+        functions.generators.affine(&affine, 0, v, COUNT, x, y);
         double worst = 0.0;
         for (int u = 0; u < COUNT; u++) {
             const double at_x = affine.x[0] * u + affine.x[1] * v + affine.x[2];
@@ -126,9 +164,9 @@ START_TEST(positions_do_not_depend_on_where_a_run_begins)
     const L1L2WarpAffine far = {{1e3, -0.017, 3.3}, {0.017, 0.913, 1e7}};
     const L1L2WarpAffine *const maps[] = {&near, &far};
     for (int k = 0; k < 2; k++) {
-        l1l2_warp_generators()->affine(maps[k], 0, 77, COUNT, x, y);
+        functions.generators.affine(maps[k], 0, 77, COUNT, x, y);
         for (int u = 0; u < COUNT; u += 37) {
-            l1l2_warp_generators()->affine(maps[k], u, 77, COUNT - u, part_x, part_y);
+            functions.generators.affine(maps[k], u, 77, COUNT - u, part_x, part_y);
             ck_assert_mem_eq(part_x, x + u, (size_t)(COUNT - u) * sizeof *x);
             ck_assert_mem_eq(part_y, y + u, (size_t)(COUNT - u) * sizeof *y);
         }
@@ -141,7 +179,7 @@ START_TEST(positions_far_outside_stay_far_outside)
     enum { COUNT = 100 };
     static int32_t x[COUNT + SLACK], y[COUNT + SLACK];
     const L1L2WarpAffine affine = {{1e12, 0.0, 1e12}, {-0.5, 0.0, -1e300}};
-    l1l2_warp_generators()->affine(&affine, 0, 3, COUNT, x, y);
+    functions.generators.affine(&affine, 0, 3, COUNT, x, y);
     for (int u = 0; u < COUNT; u++) {
         ck_assert_int_gt(x[u] / L1L2_WARP_PHASES, 500000);
         ck_assert_int_lt(y[u] / L1L2_WARP_PHASES, -500000);
@@ -163,8 +201,8 @@ START_TEST(every_processor_gives_the_positions_of_plain_c)
         }
         const int u = (int)l1l2_rng_below(&rng, 16000), v = (int)l1l2_rng_below(&rng, 16000);
         const int count = 1 + (int)l1l2_rng_below(&rng, COUNT);
-        l1l2_warp_generators()->affine(&affine, u, v, count, x, y);
-        l1l2_warp_generators_plain.affine(&affine, u, v, count, plain_x, plain_y);
+        functions.generators.affine(&affine, u, v, count, x, y);
+        plain.generators.affine(&affine, u, v, count, plain_x, plain_y);
         ck_assert_mem_eq(x, plain_x, (size_t)count * sizeof *x);
         ck_assert_mem_eq(y, plain_y, (size_t)count * sizeof *y);
     }
@@ -173,12 +211,17 @@ END_TEST
 
 int main(void)
 {
+    functions = fast_functions(), plain = plain_functions();
     Suite *suite = suite_create("the warp's parts");
     TCase *tc = tcase_create("kernel");
     tcase_add_loop_test(tc, weights_sum_to_one_in_every_phase, 0, 3);
     tcase_add_loop_test(tc, phase_0_is_the_sample_itself, 0, 3);
     tcase_add_loop_test(tc, weights_are_the_same_from_both_sides, 0, 3);
+    tcase_add_loop_test(tc, weights_stay_within_the_bounds_of_the_fixed_point_analyses, 0, 3);
     tcase_add_loop_test(tc, a_row_of_bytes_fits_16_bits_however_it_overshoots, 0, 3);
+    suite_add_tcase(suite, tc);
+    tc = tcase_create("tables");
+    tcase_add_test(tc, every_table_is_full);
     suite_add_tcase(suite, tc);
     tc = tcase_create("coordinates");
     tcase_add_loop_test(tc, a_plane_in_full_has_its_samples_at_pixel_centres, 0, 3);

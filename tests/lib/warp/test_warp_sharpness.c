@@ -2,6 +2,7 @@
 /* What a viewer sees of the warp in a slow pan: sharpness that does not pulse, motion without steps. */
 #include "warp/coords.h"
 #include "warp/warp_fixture.h"
+#include "warp/warp_tables.h"
 
 enum { FRAMES = 41 };
 static const double PAN_PX = 0.05;
@@ -71,7 +72,7 @@ START_TEST(a_slow_pan_moves_without_steps)
     const double step = PAN_PX * L1L2_WARP_PHASES;
     for (int t = 0; t < 100; t++) {
         const L1L2WarpAffine affine = {{0.9, 0.0, PAN_PX * t}, {0.0, 0.9, 0.0}};
-        l1l2_warp_generators()->affine(&affine, 0, 7, COUNT, x, y);
+        fast_functions().generators.affine(&affine, 0, 7, COUNT, x, y);
         for (int u = 0; t > 0 && u < COUNT; u++)
             if (fabs(x[u] - last[u] - step) >= 1.0)
                 ck_abort_msg("frame %d, sample %d moved by %d phases", t, u, x[u] - last[u]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the tests of the warp's sample types share: two functions that must give the same bytes, for any positions. */
+/* What tests of the warp's sample types share: two functions that must give the same bytes for any positions. */
 #ifndef WARP_RUNS_H
 #define WARP_RUNS_H
 
@@ -12,7 +12,7 @@
 
 enum { ONE = L1L2_WARP_PHASES, MAX_COUNT = 67, GUARD_BYTES = 32, GUARD_BYTE = 0x5A };
 
-/* Ways in which positions follow each other: starts and steps in 1/1024 samples. */
+/* How positions follow each other, in 1/1024 samples. */
 typedef struct Walk {
     int step_x, step_y;
     int jitter; /* each position is off by up to this much */
@@ -27,7 +27,7 @@ static const Walk walks[] = {
 
 static inline void walk(const Walk *way, L1L2Rng *rng, int width, int height, int count, int32_t *x, int32_t *y)
 {
-    /* Starting from inside or a little outside: the way then crosses edges. */
+    /* Starts inside or a little outside, so that the positions cross edges. */
     const int from_x = (int)l1l2_rng_below(rng, (uint32_t)((width + 20) * ONE)) - 10 * ONE;
     const int from_y = (int)l1l2_rng_below(rng, (uint32_t)((height + 20) * ONE)) - 10 * ONE;
     for (int i = 0; i < count; i++) {
@@ -38,7 +38,7 @@ static inline void walk(const Walk *way, L1L2Rng *rng, int width, int height, in
 
 /* Two functions for the same planes, and those planes. */
 typedef struct RunPair {
-    L1L2WarpRun *fast, *plain;
+    L1L2WarpDirectRun *fast, *plain;
     int components, depth, shift;
 } RunPair;
 
@@ -47,7 +47,7 @@ static inline int sample_bytes(const RunPair *pair)
     return pair->components * (pair->depth > 8 ? 2 : 1);
 }
 
-/* A plane whose memory ends with its last sample: reading beyond is for the sanitizer to find. */
+/* A plane whose memory ends with its last sample, so that the sanitizer reports reads beyond it. */
 static inline L1L2WarpPlane plane_new(L1L2Rng *rng, const RunPair *pair, int width, int height, int padding)
 {
     const uint32_t max = (1u << pair->depth) - 1;

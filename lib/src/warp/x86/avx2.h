@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the sample types' AVX2 code shares. A group is eight lanes of 32 bits: 8, 4 or 2 output samples of 1, 2 or 3..4
- * components; each half of it, four lanes, has its taps of one row within some bytes of the source, its window.
+ * What the direct sample types share for AVX2: a group is eight lanes of 32 bits, 8, 4 or 2 output samples of 1, 2 or
+ * 3..4 components. Each half of a group, four lanes, has its taps of a row within some bytes of the source, its window.
  */
 #ifndef L1L2_WARP_X86_AVX2_H
 #define L1L2_WARP_X86_AVX2_H
@@ -10,27 +10,27 @@
 
 #include "warp/sample.h"
 
-#ifdef __AVX2__ /* so that it compiles alone, on every machine */
+#ifdef __AVX2__ /* so that it can be compiled alone on every machine */
 
 #include <immintrin.h>
 
-/* The weights of two taps in the 16-bit halves of each lane, for taps 0 and 1, 2 and 3, 4 and 5. */
+/* The weights of two taps in the two words of each lane: for taps 0 and 1, 2 and 3, 4 and 5. */
 typedef struct Weights {
     __m256i pair[L1L2_WARP_MAX_TAPS / 2];
 } Weights;
 
-SPECIALIZED __m256i join(__m128i low, __m128i high)
+L1L2_INLINE __m256i join(__m128i low, __m128i high)
 {
     return _mm256_inserti128_si256(_mm256_castsi128_si256(low), high, 1);
 }
 
-SPECIALIZED __m256i load_halves(const void *low, const void *high)
+L1L2_INLINE __m256i load_halves(const void *low, const void *high)
 {
     return join(_mm_loadu_si128(low), _mm_loadu_si128(high));
 }
 
-/* One value a sample -> one a lane. */
-SPECIALIZED __m256i spread(const int32_t *at, const int components)
+/* Repeats the value of each sample for all of its components. */
+L1L2_INLINE __m256i spread(const int32_t *at, const int components)
 {
     if (components == 1)
         return _mm256_loadu_si256((const void *)at);
@@ -40,8 +40,8 @@ SPECIALIZED __m256i spread(const int32_t *at, const int components)
     return _mm256_permutevar8x32_epi32(_mm256_castsi128_si256(values), lanes);
 }
 
-/* Linear weights need no table: phase 0..1023 -> ONE - 16 phase, 16 phase. */
-SPECIALIZED Weights weights_2(const int32_t *at, const int components)
+/* Bilinear weights need no table: phase 0..1023 has the weights ONE - 16 * phase and 16 * phase. */
+L1L2_INLINE Weights weights_2(const int32_t *at, const int components)
 {
     const __m256i phase = _mm256_and_si256(spread(at, components), _mm256_set1_epi32(L1L2_WARP_PHASES - 1));
     const __m256i second = _mm256_slli_epi32(phase, L1L2_WARP_WEIGHT_BITS - L1L2_WARP_PHASE_BITS);
@@ -49,8 +49,8 @@ SPECIALIZED Weights weights_2(const int32_t *at, const int components)
     return (Weights){{_mm256_or_si256(first, _mm256_slli_epi32(second, 16))}};
 }
 
-/* at[]: of the group's samples. */
-SPECIALIZED Weights weights_4(const L1L2WarpKernel *kernel, const int32_t *at, const int components)
+/* at[]: positions of the group's samples. */
+L1L2_INLINE Weights weights_4(const L1L2WarpKernel *kernel, const int32_t *at, const int components)
 {
 #define PHASE(i) (const void *)(kernel->weights + (at[i] & (L1L2_WARP_PHASES - 1)) * 4)
 #define TWO_PHASES(i, j) _mm_unpacklo_epi64(_mm_loadl_epi64(PHASE(i)), _mm_loadl_epi64(PHASE(j)))
@@ -71,7 +71,7 @@ SPECIALIZED Weights weights_4(const L1L2WarpKernel *kernel, const int32_t *at, c
 #undef PHASE
 }
 
-SPECIALIZED Weights weights_6(const L1L2WarpKernel *kernel, const int32_t *at, const int components)
+L1L2_INLINE Weights weights_6(const L1L2WarpKernel *kernel, const int32_t *at, const int components)
 {
 #define PHASE(i) (const void *)(kernel->weights + (at[i] & (L1L2_WARP_PHASES - 1)) * 8)
     if (components == 1) {
@@ -93,29 +93,29 @@ SPECIALIZED Weights weights_6(const L1L2WarpKernel *kernel, const int32_t *at, c
 #undef PHASE
 }
 
-SPECIALIZED Weights load_weights(const L1L2WarpKernel *kernel, const int32_t *at, const int taps, const int components)
+L1L2_INLINE Weights load_weights(const L1L2WarpKernel *kernel, const int32_t *at, const int taps, const int components)
 {
     return taps == 2 ? weights_2(at, components)
          : taps == 4 ? weights_4(kernel, at, components) : weights_6(kernel, at, components);
 }
 
 typedef struct Reach {
-    uint32_t columns, rows; /* a first tap below these has its window and rows in the plane */
+    uint32_t columns, rows; /* windows whose first tap is below these, and not negative, lie in the plane */
 } Reach;
 
-SPECIALIZED int first_tap(int32_t at, const int taps)
+L1L2_INLINE int first_tap(int32_t at, const int taps)
 {
     return (at >> L1L2_WARP_PHASE_BITS) - (taps / 2 - 1);
 }
 
-/* For each lane: samples from its half's first one, by axis. */
-SPECIALIZED __m256i from_first(const int32_t *at, const int components)
+/* For each lane, whole samples from the first position of its half, along one axis. */
+L1L2_INLINE __m256i from_first(const int32_t *at, const int components)
 {
     const __m256i whole = _mm256_srai_epi32(spread(at, components), L1L2_WARP_PHASE_BITS);
     return _mm256_sub_epi32(whole, _mm256_shuffle_epi32(whole, 0x00));
 }
 
-SPECIALIZED bool all_within(__m256i offset, int limit)
+L1L2_INLINE bool all_within(__m256i offset, int limit)
 {
     const __m256i limits = _mm256_set1_epi32(limit);
     return _mm256_movemask_epi8(_mm256_cmpeq_epi32(_mm256_max_epu32(offset, limits), limits)) == -1;

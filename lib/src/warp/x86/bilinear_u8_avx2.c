@@ -1,35 +1,37 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Bilinear lines for AVX2: sixteen lanes of 16 bits at a time, the same bytes as plain C. Each half of a group has the
- * taps of a row within 16 bytes of the source, its window; a shuffle puts both of a lane side by side.
+ * Bilinear scanlines for AVX2: groups of sixteen lanes of 16 bits (lanes_avx2.h).
+ *
+ * Each half of a group has the taps of a row within 16 bytes of the source, its window. A shuffle puts the two taps of
+ * a lane side by side.
  */
 #include <stdlib.h>
 
 #include "warp/bilinear_u8_impl.h"
 #include "warp/x86/lanes_avx2.h"
 
-/* Of a group. */
+/* The taps of a group. */
 typedef struct Taps {
-    const uint8_t *low, *high; /* the halves' windows in the uppermost row */
+    const uint8_t *low, *high; /* the two halves' windows in the uppermost row */
     ptrdiff_t stride;
-    __m256i pairs;             /* what brings each lane's taps of a row */
-    __m256i share_x, share_y;  /* of the right one and of the lower one, of 2^15 */
-    __m256i y;                 /* from the uppermost row on, in phases */
+    __m256i pairs;             /* the shuffle that brings each lane's two taps of a row */
+    __m256i share_x, share_y;  /* weights of the right and of the lower tap, 15 fractional bits */
+    __m256i y;                 /* position from the uppermost row, in phases */
 } Taps;
 
-SPECIALIZED __m256i lerp(__m256i a, __m256i b, __m256i share)
+L1L2_INLINE __m256i lerp(__m256i a, __m256i b, __m256i share)
 {
     return _mm256_add_epi16(a, _mm256_mulhrs_epi16(_mm256_sub_epi16(b, a), share));
 }
 
-SPECIALIZED __m256i load_row(const Taps *taps, int row)
+L1L2_INLINE __m256i load_row(const Taps *taps, int row)
 {
     return _mm256_shuffle_epi8(load_halves(taps->low + row * taps->stride, taps->high + row * taps->stride),
                                taps->pairs);
 }
 
-/* From left taps in the lower bytes, right ones in the upper bytes. */
-SPECIALIZED __m256i lerp_row(const Taps *taps, __m256i pairs)
+/* pairs: left taps in the lower bytes of each word, right ones in the upper bytes. */
+L1L2_INLINE __m256i lerp_row(const Taps *taps, __m256i pairs)
 {
     const __m256i left = _mm256_slli_epi16(_mm256_and_si256(pairs, words(255)), L1L2_WARP_BILINEAR_BITS);
     const __m256i right = _mm256_and_si256(_mm256_srli_epi16(pairs, 8 - L1L2_WARP_BILINEAR_BITS),
@@ -37,8 +39,9 @@ SPECIALIZED __m256i lerp_row(const Taps *taps, __m256i pairs)
     return lerp(left, right, taps->share_x);
 }
 
-/* Lanes lie in two rows at most. Without a branch, for where a line crosses a row changes from row to row. */
-SPECIALIZED __m256i weigh_crossing(const Taps *taps)
+/* The group lies in at most two rows. There is no branch: where a scanline crosses a row changes from row to row, and
+ * would be predicted badly. */
+L1L2_INLINE __m256i weigh_crossing(const Taps *taps)
 {
     const __m256i down = _mm256_srai_epi16(_mm256_slli_epi16(taps->y, 15 - L1L2_WARP_PHASE_BITS), 15);
     const __m256i first = load_row(taps, 0), second = load_row(taps, 1), third = load_row(taps, 2);
@@ -46,8 +49,8 @@ SPECIALIZED __m256i weigh_crossing(const Taps *taps)
                 lerp_row(taps, _mm256_blendv_epi8(second, third, down)), taps->share_y);
 }
 
-/* Or in many: `more` than one. */
-SPECIALIZED __m256i weigh_steep(const Taps *taps, int more)
+/* The group lies in the uppermost row and in up to `more` further ones. */
+L1L2_INLINE __m256i weigh_steep(const Taps *taps, int more)
 {
     const __m256i further = _mm256_srli_epi16(taps->y, L1L2_WARP_PHASE_BITS);
     __m256i sum = _mm256_setzero_si256(), upper = lerp_row(taps, load_row(taps, 0));
@@ -59,8 +62,8 @@ SPECIALIZED __m256i weigh_steep(const Taps *taps, int more)
     return sum;
 }
 
-/* along, down: the group's steps, from the plane's corner. */
-SPECIALIZED Taps find_taps(const L1L2WarpPlane *src, const Steps *along, const Steps *down, int64_t row,
+/* along, down: the group's steps, counted from the plane's corner. row: the uppermost row. */
+L1L2_INLINE Taps find_taps(const L1L2WarpPlane *src, const Steps *along, const Steps *down, int64_t row,
                            const int components)
 {
     const __m256i mask = words(0x7FFF);
@@ -85,15 +88,16 @@ SPECIALIZED Taps find_taps(const L1L2WarpPlane *src, const Steps *along, const S
     };
 }
 
-/* Whole groups from .. to - 1, all of the k-th pieces, all of their samples in the plane. */
-SPECIALIZED void render_groups(const L1L2WarpPlane *src, const L1L2WarpScanline *line, int k, int from, int to,
+/* Renders whole groups, samples from .. to - 1 of the k-th pieces. All of their taps are in the plane. */
+L1L2_INLINE void render_groups(const L1L2WarpPlane *src, const L1L2WarpScanline *scanline, int k, int from, int to,
                                uint8_t *dst, const int components, const bool steep)
 {
     const int group = group_of(components);
-    Steps along = steps_of(&line->along[k], components), down = steps_of(&line->down[k], components);
+    Steps along = steps_of(&scanline->along[k], components), down = steps_of(&scanline->down[k], components);
     const int64_t across = (int64_t)(group - 1) * down.step, to_low = down.step < 0 ? across : 0;
-    along.at += (int64_t)(from - line->along[k].from) * along.step + line->first * ((int64_t)1 << L1L2_WARP_STEP_BITS);
-    down.at += (int64_t)(from - line->down[k].from) * down.step;
+    along.at += (int64_t)(from - scanline->along[k].from) * along.step;
+    along.at += scanline->first * ((int64_t)1 << L1L2_WARP_STEP_BITS);
+    down.at += (int64_t)(from - scanline->down[k].from) * down.step;
     for (int i = from; i < to; i += group) {
         const int64_t row = (down.at + to_low) >> L1L2_WARP_STEP_BITS;
         const Taps taps = find_taps(src, &along, &down, row, components);
@@ -107,45 +111,46 @@ SPECIALIZED void render_groups(const L1L2WarpPlane *src, const L1L2WarpScanline 
     }
 }
 
-SPECIALIZED int column_of(const L1L2WarpScanline *line, int k, int i)
+L1L2_INLINE int column_of(const L1L2WarpScanline *scanline, int k, int i)
 {
-    return (l1l2_warp_piece_position(&line->along[k], i) >> L1L2_WARP_PHASE_BITS) + line->first;
+    return (l1l2_warp_piece_position(&scanline->along[k], i) >> L1L2_WARP_PHASE_BITS) + scanline->first;
 }
 
-SPECIALIZED int row_of(const L1L2WarpScanline *line, int k, int i)
+L1L2_INLINE int row_of(const L1L2WarpScanline *scanline, int k, int i)
 {
-    return l1l2_warp_piece_position(&line->down[k], i) >> L1L2_WARP_PHASE_BITS;
+    return l1l2_warp_piece_position(&scanline->down[k], i) >> L1L2_WARP_PHASE_BITS;
 }
 
-/* The k-th pieces. Groups may overrun their end, where the next ones write over it. */
-SPECIALIZED void render_piece(const L1L2WarpPlane *src, const L1L2WarpScanline *line, int k, uint8_t *dst,
+/* Renders the k-th pieces: groups where all taps are in the plane, plain C before and after them. Groups may overrun
+ * the pieces' end, where the next piece writes over them. */
+L1L2_INLINE void render_piece(const L1L2WarpPlane *src, const L1L2WarpScanline *scanline, int k, uint8_t *dst,
                               const int components)
 {
-    const int group = group_of(components), begin = line->along[k].from, end = end_of_samples(line, k);
+    const int group = group_of(components), begin = scanline->along[k].from, end = end_of_samples(scanline, k);
     int from = begin, to = begin + (end - begin + group - 1) / group * group;
-    if (to > line->count)
+    if (to > scanline->count)
         to -= group;
-    const int row = row_of(line, k, from), last = row_of(line, k, to + group), low = row < last ? row : last;
+    const int row = row_of(scanline, k, from), last = row_of(scanline, k, to + group), low = row < last ? row : last;
     const int spare = src->height - 3 - (row < last ? last : row);
-    const bool steep = abs(line->down[k].step) > (1 << L1L2_WARP_STEP_BITS) / group;
+    const bool steep = abs(scanline->down[k].step) > (1 << L1L2_WARP_STEP_BITS) / group;
     if (low < 0 || spare < (steep ? 1 : 0))
         to = from;
-    while (from < to && column_of(line, k, from) < 0)
+    while (from < to && column_of(scanline, k, from) < 0)
         from += group;
-    while (from < to && (column_of(line, k, to) - src->width) * components + LANES > 0)
+    while (from < to && (column_of(scanline, k, to) - src->width) * components + LANES > 0)
         to -= group;
-    linear_plain(src, line, k, begin, from < end ? from : end, dst, components);
+    bilinear_plain(src, scanline, k, begin, from < end ? from : end, dst, components);
     if (steep)
-        render_groups(src, line, k, from, to, dst, components, true);
+        render_groups(src, scanline, k, from, to, dst, components, true);
     else
-        render_groups(src, line, k, from, to, dst, components, false);
-    linear_plain(src, line, k, to > from ? to : from, end, dst, components);
+        render_groups(src, scanline, k, from, to, dst, components, false);
+    bilinear_plain(src, scanline, k, to > from ? to : from, end, dst, components);
 }
 
-SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpScanline *line, uint8_t *dst, const int components)
+L1L2_INLINE void run(const L1L2WarpPlane *src, const L1L2WarpScanline *scanline, uint8_t *dst, const int components)
 {
-    for (int k = 0; k < line->along_pieces; k++)
-        render_piece(src, line, k, dst, components);
+    for (int k = 0; k < scanline->along_pieces; k++)
+        render_piece(src, scanline, k, dst, components);
 }
 
-DEFINE_LINEAR_RUNS(l1l2_warp_bilinear_run_avx2)
+DEFINE_BILINEAR_RUNS(l1l2_warp_bilinear_u8_init_avx2)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The generators for AVX2: the positions of plain C, eight at a time. */
+/* The generators for AVX2: eight positions at a time. */
 #include <immintrin.h>
 
 #include "warp/coords_impl.h"
 
-SPECIALIZED void run_fixed(uint64_t at, uint64_t step, int count, int32_t *out)
+L1L2_INLINE void run_fixed(uint64_t at, uint64_t step, int count, int32_t *out)
 {
     const __m256i one = _mm256_set1_epi64x((long long)step), two = _mm256_add_epi64(one, one);
     const __m256i four = _mm256_add_epi64(two, two), eight = _mm256_add_epi64(four, four);
@@ -22,4 +22,4 @@ SPECIALIZED void run_fixed(uint64_t at, uint64_t step, int count, int32_t *out)
     }
 }
 
-DEFINE_GENERATORS(l1l2_warp_generators_avx2)
+DEFINE_GENERATORS(l1l2_warp_coords_init_avx2)

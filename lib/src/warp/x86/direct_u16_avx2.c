@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The sample type of 16 bits for AVX2: eight sums at a time, the same bytes as plain C.
+ * Samples of 9 to 16 bits for AVX2: eight sums at a time, in groups (avx2.h).
  *
- * Groups as in warp_avx2.h. A window is 16 bytes: two taps of 2 or 4 components have one of their own. A shuffle puts
- * the two taps of each lane side by side, pmaddwd weighs them. What does not fit (an edge, a window too short, rows too
- * steep) is left to plain C.
+ * A window is 16 bytes; with 2 or 4 components, every two taps have a window. A shuffle puts the two taps of each lane
+ * side by side, pmaddwd weighs and adds them. Groups at an edge of the plane, too wide for their windows or in more
+ * than two rows are left to plain C.
  */
 #include "warp/direct_u16_impl.h"
 #include "warp/x86/avx2.h"
 
-/* What a plane's samples have in common. */
+/* What depends on the depth of a plane's samples. */
 typedef struct Depth {
     __m128i bits, shift;     /* counts for shifts */
     __m128i rest;            /* 16 - bits */
@@ -17,7 +17,7 @@ typedef struct Depth {
     __m256i round, max;
 } Depth;
 
-SPECIALIZED Depth load_depth(const L1L2WarpPlane *src, const int wide)
+L1L2_INLINE Depth load_depth(const L1L2WarpPlane *src, const int wide)
 {
     const int round = wide ? L1L2_WARP_DIRECT_U16_ROUND : l1l2_warp_direct_u16_narrow_round(src->depth);
     return (Depth){
@@ -30,20 +30,20 @@ SPECIALIZED Depth load_depth(const L1L2WarpPlane *src, const int wide)
     };
 }
 
-SPECIALIZED __m256i load_window(const uint8_t *low, const uint8_t *high, const Depth *depth, const int wide)
+L1L2_INLINE __m256i load_window(const uint8_t *low, const uint8_t *high, const Depth *depth, const int wide)
 {
     const __m256i window = load_halves(low, high);
     return wide ? _mm256_xor_si256(window, _mm256_set1_epi16((short)L1L2_WARP_DIRECT_U16_BIAS))
                 : _mm256_srl_epi16(window, depth->shift);
 }
 
-/* The weighted sum of one row's taps, before the cut. first: shuffle that brings a window's first two taps. */
-SPECIALIZED __m256i weigh_row(const uint8_t *low, const uint8_t *high, __m256i first, const Weights *wx,
+/* The weighted sum of one row's taps, before the cut. first: the shuffle that brings a window's first two taps. */
+L1L2_INLINE __m256i weigh_row(const uint8_t *low, const uint8_t *high, __m256i first, const Weights *wx,
                               const Depth *depth, const int taps, const int components, const int wide)
 {
     __m256i sum = _mm256_setzero_si256();
     for (int k = 0; k < taps; k += 2) {
-        /* A window of one component has the taps 2 and 3, too. */
+        /* With one component, a window has the taps 2 and 3 too. */
         const int from = components == 1 ? k / 4 * 4 : k;
         const __m256i window = load_window(low + from * 2 * components, high + from * 2 * components, depth, wide);
         const __m256i order = from == k ? first : _mm256_add_epi8(first, _mm256_set1_epi8(4));
@@ -53,14 +53,14 @@ SPECIALIZED __m256i weigh_row(const uint8_t *low, const uint8_t *high, __m256i f
     return sum;
 }
 
-/* The low halves of a's lanes and of b's, side by side. */
-SPECIALIZED __m256i pair(__m256i a, __m256i b_high)
+/* The low words of a's lanes beside the high words of b's. */
+L1L2_INLINE __m256i pair(__m256i a, __m256i b_high)
 {
     return _mm256_blend_epi16(a, b_high, 0xAA);
 }
 
-/* low, high: the first tap's row of each half. Not yet cut off at the ends. */
-SPECIALIZED __m256i weigh(const uint8_t *low, const uint8_t *high, ptrdiff_t stride, __m256i first, const Weights *wx,
+/* The weighted sum of all taps, not yet limited to the depth. low, high: the first tap of each half. */
+L1L2_INLINE __m256i weigh(const uint8_t *low, const uint8_t *high, ptrdiff_t stride, __m256i first, const Weights *wx,
                           const Weights *wy, const Depth *depth, const int taps, const int components, const int wide)
 {
     __m256i sum = depth->round, lower = _mm256_setzero_si256();
@@ -87,7 +87,7 @@ SPECIALIZED __m256i weigh(const uint8_t *low, const uint8_t *high, ptrdiff_t str
                             _mm256_set1_epi32(L1L2_WARP_DIRECT_U16_BIAS));
 }
 
-SPECIALIZED void store(uint8_t *dst, __m256i sums, const Depth *depth)
+L1L2_INLINE void store(uint8_t *dst, __m256i sums, const Depth *depth)
 {
     const __m256i words = _mm256_min_epu16(_mm256_packus_epi32(sums, sums), depth->max);
     const __m256i placed = _mm256_sll_epi16(words, depth->shift);
@@ -95,8 +95,8 @@ SPECIALIZED void store(uint8_t *dst, __m256i sums, const Depth *depth)
                      _mm_unpacklo_epi64(_mm256_castsi256_si128(placed), _mm256_extracti128_si256(placed, 1)));
 }
 
-/* For each lane the bytes of two neighbouring taps in the half's window. offset: of the lane's sample, samples. */
-SPECIALIZED __m256i first_shuffle(__m256i offset, const int components)
+/* For each lane the bytes of two neighboring taps in its half's window. offset: of the lane's sample in the window. */
+L1L2_INLINE __m256i first_shuffle(__m256i offset, const int components)
 {
     const int next = 2 * components; /* bytes from tap to tap */
     const __m256i component = components == 1 ? _mm256_setzero_si256()
@@ -108,15 +108,15 @@ SPECIALIZED __m256i first_shuffle(__m256i offset, const int components)
     return _mm256_add_epi8(four_times, _mm256_set1_epi32(0x100 | next << 16 | (next + 1) << 24));
 }
 
-SPECIALIZED Reach find_reach(const L1L2WarpPlane *src, const int taps, const int components)
+L1L2_INLINE Reach find_reach(const L1L2WarpPlane *src, const int taps, const int components)
 {
     const int last_window = components == 1 ? taps / 6 * 4 : taps - 2; /* samples from the first tap */
     const int columns = src->width - (last_window + 8 / components) + 1, rows = src->height - taps + 1;
     return (Reach){columns > 0 ? (uint32_t)columns : 0, rows > 0 ? (uint32_t)rows : 0};
 }
 
-/* False: the group must be done otherwise. */
-SPECIALIZED bool render_group(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const Reach *reach,
+/* Renders a group. False: it does not fit, and nothing was written. */
+L1L2_INLINE bool render_group(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const Reach *reach,
                               const Depth *depth, const int32_t *x, const int32_t *y, uint8_t *dst, const int taps,
                               const int components, const int wide)
 {
@@ -137,7 +137,7 @@ SPECIALIZED bool render_group(const L1L2WarpPlane *src, const L1L2WarpKernel *ke
     const uint8_t *high = src->data + high_y * src->stride + (ptrdiff_t)high_x * 2 * components;
     __m256i sums = weigh(low, high, src->stride, first, &wx, &wy, depth, taps, components, wide);
     if (half > 1 && !_mm256_testz_si256(rows, rows)) {
-        /* Some lanes are a row further, all of them up or all down: weigh that row too, and let each lane choose. */
+        /* Some lanes are one row further, all of them up or all down: weigh that row too, and let each lane choose. */
         const int step = _mm256_movemask_ps(_mm256_castsi256_ps(rows)) ? -1 : 1;
         const __m256i here = _mm256_cmpeq_epi32(rows, zero), there = _mm256_cmpeq_epi32(rows, _mm256_set1_epi32(step));
         if (_mm256_movemask_epi8(_mm256_or_si256(here, there)) != -1 || (uint32_t)(low_y + step) >= reach->rows ||
@@ -151,10 +151,10 @@ SPECIALIZED bool render_group(const L1L2WarpPlane *src, const L1L2WarpKernel *ke
     return true;
 }
 
-SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
+L1L2_INLINE void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
                      int count, uint8_t *dst, const int taps, const int components, const int wide)
 {
-    L1L2WarpRun *const plain = l1l2_warp_direct_u16_run_plain(taps, components, src->depth);
+    L1L2WarpDirectRun *const plain = l1l2_warp_direct_u16_plain.run[wide][taps / 2 - 1][components / 2];
     const Reach reach = find_reach(src, taps, components);
     const Depth depth = load_depth(src, wide);
     const int group = 8 / components;
@@ -165,4 +165,9 @@ SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, con
     plain(src, kernel, x + i, y + i, count - i, dst + 2 * components * i);
 }
 
-DEFINE_RUNS(l1l2_warp_direct_u16_run_avx2)
+DEFINE_RUNS(static, runs)
+
+void l1l2_warp_direct_u16_init_avx2(L1L2WarpFunctions *functions)
+{
+    functions->direct_u16 = runs;
+}

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What lines for AVX2 share: sixteen lanes of 16 bits, a group. Across a line's samples, or along it, a lane is a
- * component of a sample: 16, 8 or 4 samples of 1, 2 or 3..4 components, where three take four lanes. Down it is a
- * component of a column, as they lie in memory.
+ * What the scanline sample types share for AVX2: a group is sixteen lanes of 16 bits.
+ *
+ * Along a scanline, a lane is a component of a sample: a group has 16, 8 or 4 samples of 1, 2 or 3..4 components, where
+ * three components take four lanes. Down the columns, a lane is a component of a column, in the order of memory: a
+ * group of three components has four whole columns, and four lanes that are not used.
  */
 #ifndef L1L2_WARP_X86_LANES_AVX2_H
 #define L1L2_WARP_X86_LANES_AVX2_H
@@ -13,22 +15,23 @@
 #include "warp/scanline_u8.h"
 #include "warp/x86/avx2.h"
 
-#ifdef __AVX2__ /* so that it compiles alone, on every machine */
+#ifdef __AVX2__ /* so that it can be compiled alone on every machine */
 
 enum { LANES = 16 };
 
-SPECIALIZED int group_of(const int components)
+L1L2_INLINE int group_of(const int components)
 {
-    return components == 1 ? 16 : components == 2 ? 8 : 4; /* columns, or samples */
+    return components == 1 ? 16 : components == 2 ? 8 : 4; /* columns or samples of a group */
 }
 
-SPECIALIZED __m256i words(int value)
+L1L2_INLINE __m256i words(int value)
 {
     return _mm256_set1_epi16((short)value);
 }
 
-/* Words 0..7 of v to lanes: each as often as it has components; down, three lie close, along, they take four lanes. */
-SPECIALIZED __m256i spread_words(__m128i v, const int components, const bool down)
+/* Repeats words 0..7 of v, one for each column or sample, for all of its components: three components take three lanes
+ * down and four along. */
+L1L2_INLINE __m256i spread_words(__m128i v, const int components, const bool down)
 {
     const __m256i twice = _mm256_setr_epi8(0, 1, 0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7,
                                            8, 9, 8, 9, 10, 11, 10, 11, 12, 13, 12, 13, 14, 15, 14, 15);
@@ -40,23 +43,23 @@ SPECIALIZED __m256i spread_words(__m128i v, const int components, const bool dow
                                components == 2 ? twice : components == 3 && down ? close : four_times);
 }
 
-/* Values of 32 bits, one a column or sample, to lanes: the first eight in a, or sixteen as packing wants them, by fours
- * a, b, a, b. */
-SPECIALIZED __m256i to_lanes(__m256i a, __m256i b, const int components, const bool down)
+/* The values of a group's columns or samples, 32 bits each, to lanes. The first eight are in a; sixteen are in a, b, a,
+ * b by fours, which is the order that packing needs. */
+L1L2_INLINE __m256i to_lanes(__m256i a, __m256i b, const int components, const bool down)
 {
     if (components == 1)
         return _mm256_packs_epi32(a, b);
     return spread_words(_mm_packs_epi32(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1)), components, down);
 }
 
-/* Even steps: what a group's positions are made of. */
+/* The evenly spaced positions of a group. */
 typedef struct Steps {
     int64_t at;   /* the group's first position */
     int32_t step;
-    __m256i a, b; /* from there to its columns or samples, for to_lanes() */
+    __m256i a, b; /* distances from there to its columns or samples, in the order of to_lanes() */
 } Steps;
 
-SPECIALIZED Steps steps_of(const L1L2WarpPiece *piece, const int components)
+L1L2_INLINE Steps steps_of(const L1L2WarpPiece *piece, const int components)
 {
     const __m256i each = _mm256_set1_epi32(piece->step), eight = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     const __m256i even = _mm256_setr_epi32(0, 1, 2, 3, 8, 9, 10, 11);
@@ -65,8 +68,8 @@ SPECIALIZED Steps steps_of(const L1L2WarpPiece *piece, const int components)
                    _mm256_mullo_epi32(each, odd)};
 }
 
-/* Its positions, cut to phases; first: of the group, so that none is negative. */
-SPECIALIZED __m256i positions_from(const Steps *steps, int32_t first, const int components, const bool down)
+/* A group's positions in phases. first: its first position, counted from where none of the group's is negative. */
+L1L2_INLINE __m256i positions_from(const Steps *steps, int32_t first, const int components, const bool down)
 {
     enum { CUT = L1L2_WARP_STEP_BITS - L1L2_WARP_PHASE_BITS };
     const __m256i from = _mm256_set1_epi32(first);
@@ -74,8 +77,8 @@ SPECIALIZED __m256i positions_from(const Steps *steps, int32_t first, const int 
                     _mm256_srli_epi32(_mm256_add_epi32(from, steps->b), CUT), components, down);
 }
 
-/* One word a lane, of samples. */
-SPECIALIZED void store(uint8_t *dst, __m256i lanes, const int components)
+/* Writes the samples of a group, one word a lane. */
+L1L2_INLINE void store(uint8_t *dst, __m256i lanes, const int components)
 {
     const __m128i group = _mm_packus_epi16(_mm256_castsi256_si128(lanes), _mm256_extracti128_si256(lanes, 1));
     if (components == 3) {

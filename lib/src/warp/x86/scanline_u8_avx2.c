@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Lines for AVX2: sixteen lanes of 16 bits at a time, the same bytes as plain C. Along, samples are in quarters of four
- * lanes, each of which has two taps within eight values of the line, its window. A shuffle puts them side by side,
- * pmaddwd weighs them.
+ * Scanlines for AVX2: groups of sixteen lanes of 16 bits (lanes_avx2.h).
+ *
+ * Down, a lane is a component of a column, and rows are added up one by one. Along, a group has four quarters of four
+ * lanes. Two neighboring taps of a quarter's lanes lie within eight values of the scanline, its window: a shuffle puts
+ * them side by side, pmaddwd weighs and adds them.
  */
 #include <stdlib.h>
 
-#include "warp/bilinear_u8.h"
 #include "warp/scanline_u8_impl.h"
 #include "warp/x86/lanes_avx2.h"
 
@@ -14,11 +15,12 @@ typedef struct TapWeights {
     __m256i tap[L1L2_WARP_MAX_TAPS];
 } TapWeights;
 
-/* As set_cubic() of warp_kernel.c. */
-SPECIALIZED TapWeights weigh_cubic(__m256i phase)
+/* The weights of sixteen phases: set_cubic() of kernel.c, operation by operation. */
+L1L2_INLINE TapWeights weigh_cubic(__m256i phase)
 {
     const __m256i t = _mm256_slli_epi16(phase, 15 - L1L2_WARP_PHASE_BITS);
-    const __m256i n = _mm256_sub_epi16(words(-32768), t); /* where it does not fit, t is 0, and so are all products */
+    /* Where t is 0, n = 2^15 wraps to -2^15: then all products are 0 in either case. */
+    const __m256i n = _mm256_sub_epi16(words(-32768), t);
     const __m256i q = _mm256_mulhrs_epi16(t, n);
     const __m256i qt = _mm256_mulhrs_epi16(q, t), qn = _mm256_mulhrs_epi16(q, n);
     const __m256i quarter = _mm256_mulhrs_epi16(q, words(4096));
@@ -35,9 +37,9 @@ SPECIALIZED TapWeights weigh_cubic(__m256i phase)
                       _mm256_add_epi16(right, _mm256_and_si256(is_right, rest)), after}};
 }
 
-/* From the table: the rows of sixteen phases become one vector for each of the six taps. The phases are found once
- * more, for it takes long to get them out of a vector. */
-SPECIALIZED TapWeights weigh_lanczos(const L1L2WarpKernel *kernel, const Steps *steps, const int components,
+/* The weights of sixteen phases from the table: its rows are transposed to one vector for each of the six taps. The
+ * phases are computed once more by scalar code, which is faster than taking them out of a vector. */
+L1L2_INLINE TapWeights weigh_lanczos(const L1L2WarpKernel *kernel, const Steps *steps, const int components,
                                   const bool down)
 {
     enum { CUT = L1L2_WARP_STEP_BITS - L1L2_WARP_PHASE_BITS };
@@ -67,15 +69,15 @@ SPECIALIZED TapWeights weigh_lanczos(const L1L2WarpKernel *kernel, const Steps *
     return w;
 }
 
-SPECIALIZED TapWeights weigh(const L1L2WarpKernel *kernel, const Steps *steps, __m256i position, const int taps,
+L1L2_INLINE TapWeights weigh(const L1L2WarpKernel *kernel, const Steps *steps, __m256i position, const int taps,
                           const int components, const bool down)
 {
     const __m256i phase = _mm256_and_si256(position, words(L1L2_WARP_PHASES - 1));
     return taps == 4 ? weigh_cubic(phase) : weigh_lanczos(kernel, steps, components, down);
 }
 
-/* Sixteen samples' sums over the rows below them. */
-SPECIALIZED __m256i sum_down(const uint8_t *first, ptrdiff_t stride, const __m256i *weight, const int rows)
+/* Sixteen lanes' weighted sums down `rows` rows, all lanes from the same first row. */
+L1L2_INLINE __m256i sum_down(const uint8_t *first, ptrdiff_t stride, const __m256i *weight, const int rows)
 {
     const __m256i to_upper_bytes = _mm256_setr_epi8(-1, 0, -1, 1, -1, 2, -1, 3, -1, 4, -1, 5, -1, 6, -1, 7,
                                                     -1, 8, -1, 9, -1, 10, -1, 11, -1, 12, -1, 13, -1, 14, -1, 15);
@@ -88,9 +90,9 @@ SPECIALIZED __m256i sum_down(const uint8_t *first, ptrdiff_t stride, const __m25
     return sum;
 }
 
-/* Where the line crosses a row, `further` is 0 or 1 by lane: those with 1 have their taps a row further down. Without a
- * branch, for where a line crosses changes from row to row. */
-SPECIALIZED __m256i sum_across(const uint8_t *first, ptrdiff_t stride, const TapWeights *w, __m256i further,
+/* The same where the scanline crosses a row once: lanes whose `further` is 1, not 0, have their taps one row further
+ * down. There is no branch: where a scanline crosses a row changes from row to row, and would be predicted badly. */
+L1L2_INLINE __m256i sum_across(const uint8_t *first, ptrdiff_t stride, const TapWeights *w, __m256i further,
                                const int taps)
 {
     const __m256i down = _mm256_sub_epi16(_mm256_setzero_si256(), further);
@@ -102,8 +104,9 @@ SPECIALIZED __m256i sum_across(const uint8_t *first, ptrdiff_t stride, const Tap
     return sum_down(first, stride, weight, taps + 1);
 }
 
-/* The steep line: row after row that any lane has. Some lane has the first one; no lane is further than `most`. */
-SPECIALIZED __m256i sum_steep(const uint8_t *first, ptrdiff_t stride, const TapWeights *w, __m256i further, int most,
+/* The same where it crosses several rows: `further` is 0 .. most. Every first row is summed, and each lane takes its
+ * own. */
+L1L2_INLINE __m256i sum_steep(const uint8_t *first, ptrdiff_t stride, const TapWeights *w, __m256i further, int most,
                               const int taps)
 {
     __m256i sum = _mm256_setzero_si256();
@@ -113,11 +116,12 @@ SPECIALIZED __m256i sum_steep(const uint8_t *first, ptrdiff_t stride, const TapW
     return sum;
 }
 
-/* How a piece crosses the source's rows: not at all, a group at most once, more often. */
+/* How often a group of a piece crosses a row of the source: never, at most once, more often. */
 enum { FLAT, CROSSING, STEEP };
 
-/* The columns of sixteen lanes. row: the uppermost of theirs; more: rows down to the lowest one, if it is steep. */
-SPECIALIZED __m256i group_down(const uint8_t *first, ptrdiff_t stride, const L1L2WarpKernel *kernel,
+/* The sums of a group's columns. first: of their topmost taps. row: the uppermost that a lane is at; more: rows from
+ * there to the lowest, if the piece is steep. */
+L1L2_INLINE __m256i group_down(const uint8_t *first, ptrdiff_t stride, const L1L2WarpKernel *kernel,
                                const Steps *steps, int64_t row, int more, const int taps, const int components,
                                const int crossing)
 {
@@ -132,41 +136,43 @@ SPECIALIZED __m256i group_down(const uint8_t *first, ptrdiff_t stride, const L1L
     return sum_steep(first, stride, &w, further, more, taps);
 }
 
-/* Columns from .. end - 1 of a piece, and what a last group has beyond. All samples are in the plane. */
-SPECIALIZED void piece_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpPiece *piece,
+/* Groups of columns, from .. end - 1 of a piece and what the last group has beyond. All taps are in the plane.
+ *
+ * Pointers are formed for each group, and only to its topmost taps: of no group, and of taps above the first row, a
+ * pointer would lie outside the plane. */
+L1L2_INLINE void piece_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpPiece *piece,
                             int first_column, int from, int end, int16_t *values, const int taps,
                             const int components, const int crossing)
 {
     const int group = group_of(components);
     const int64_t across = (int64_t)(group - 1) * piece->step, to_low = piece->step < 0 ? across : 0;
-    const uint8_t *column = src->data + (ptrdiff_t)(first_column + from) * components - (taps / 2 - 1) * src->stride;
     Steps steps = steps_of(piece, components);
     steps.at += (int64_t)(from - piece->from) * piece->step;
     for (int i = from; i < end; i += group) {
         const int64_t low = steps.at + to_low, row = low >> L1L2_WARP_STEP_BITS;
         const int more = (int)(((low == steps.at ? low + across : steps.at) >> L1L2_WARP_STEP_BITS) - row);
-        const __m256i sum = group_down(column + row * src->stride, src->stride, kernel, &steps, row, more, taps,
-                                       components, crossing);
+        const uint8_t *first = src->data + (row - (taps / 2 - 1)) * src->stride +
+                               (ptrdiff_t)(first_column + i) * components;
+        const __m256i sum = group_down(first, src->stride, kernel, &steps, row, more, taps, components, crossing);
         _mm256_storeu_si256((void *)(values + i * components), sum);
-        column += group * components;
         steps.at += (int64_t)group * piece->step;
     }
 }
 
-SPECIALIZED int row_of(const L1L2WarpPiece *piece, int i)
+L1L2_INLINE int row_of(const L1L2WarpPiece *piece, int i)
 {
     return l1l2_warp_piece_position(piece, i) >> L1L2_WARP_PHASE_BITS;
 }
 
-SPECIALIZED void run_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpScanline *line,
+L1L2_INLINE void run_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpScanline *scanline,
                           int16_t *values, const int taps, const int components)
 {
-    const int group = group_of(components), lead = taps / 2 - 1, first = line->first;
-    /* Groups have all their columns, and sixteen bytes, in the plane if they begin here. */
+    const int group = group_of(components), lead = taps / 2 - 1, first = scanline->first;
+    /* A group that begins in inside .. outside - 1 has all of its columns, and sixteen bytes, in the plane. */
     const int inside = -first, outside = src->width - first - (LANES + components - 1) / components + 1;
-    for (int k = 0; k < line->down_pieces; k++) {
-        const L1L2WarpPiece *piece = &line->down[k];
-        const int end = end_of(line->down, k, line->down_pieces, line->columns);
+    for (int k = 0; k < scanline->down_pieces; k++) {
+        const L1L2WarpPiece *piece = &scanline->down[k];
+        const int end = end_of(scanline->down, k, scanline->down_pieces, scanline->columns);
         const int row = row_of(piece, piece->from), last_row = row_of(piece, end + group - 1);
         const int low = row < last_row ? row : last_row, high = row < last_row ? last_row : row;
         int from = piece->from > inside ? piece->from : inside < end ? inside : end;
@@ -174,7 +180,7 @@ SPECIALIZED void run_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel
         if (low < lead || high + taps - lead >= src->height)
             from = to = end;
         down_plain(src, kernel, first, piece, piece->from, from, values, taps, components);
-        if (line->down_pieces == 1 && low == high)
+        if (scanline->down_pieces == 1 && low == high)
             piece_down(src, kernel, piece, first, from, to, values, taps, components, FLAT);
         else if (abs(piece->step) <= (1 << L1L2_WARP_STEP_BITS) / group)
             piece_down(src, kernel, piece, first, from, to, values, taps, components, CROSSING);
@@ -184,8 +190,8 @@ SPECIALIZED void run_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel
     }
 }
 
-/* first: of the quarters' windows. Eight sums. */
-SPECIALIZED __m256i sum_along(const int16_t *first_low, const int16_t *first_high, __m256i pairs, const __m256i *weight,
+/* Eight sums along. first_low, first_high: the first values of two quarters' windows. */
+L1L2_INLINE __m256i sum_along(const int16_t *first_low, const int16_t *first_high, __m256i pairs, const __m256i *weight,
                               const int taps, const int components)
 {
     __m256i sum = _mm256_set1_epi32(L1L2_WARP_SCANLINE_ROUND);
@@ -196,8 +202,8 @@ SPECIALIZED __m256i sum_along(const int16_t *first_low, const int16_t *first_hig
     return _mm256_srai_epi32(sum, L1L2_WARP_SCANLINE_SHIFT);
 }
 
-/* The samples of sixteen lanes. */
-SPECIALIZED void group_along(const L1L2WarpKernel *kernel, const Steps *steps, const int16_t *values, uint8_t *dst,
+/* Renders the samples of a group. */
+L1L2_INLINE void group_along(const L1L2WarpKernel *kernel, const Steps *steps, const int16_t *values, uint8_t *dst,
                              const int taps, const int components)
 {
     const int64_t at = steps->at, quarter_step = (int64_t)group_of(components) / 4 * steps->step;
@@ -205,7 +211,7 @@ SPECIALIZED void group_along(const L1L2WarpKernel *kernel, const Steps *steps, c
     const __m256i column = _mm256_srai_epi16(position, L1L2_WARP_PHASE_BITS);
     const TapWeights w = weigh(kernel, steps, position, taps, components, false);
 
-    /* The bytes of the first pair of taps in a quarter's window. */
+    /* The bytes of the first two taps in a quarter's window. */
     const __m256i offset = _mm256_sub_epi16(column, _mm256_shufflehi_epi16(_mm256_shufflelo_epi16(column, 0), 0));
     const __m256i component = components == 1 ? words(0) : components == 2 ? _mm256_set1_epi32(0x02020000)
                                                          : _mm256_set1_epi64x(0x0606040402020000);
@@ -225,15 +231,15 @@ SPECIALIZED void group_along(const L1L2WarpKernel *kernel, const Steps *steps, c
         sum_along(first[1], first[3], _mm256_unpackhi_epi16(left, right), high, taps, components)), components);
 }
 
-/* Groups overrun a piece's end where the next one writes over it; the last one's rest is left to plain C. */
-SPECIALIZED void run_along(const L1L2WarpKernel *kernel, const L1L2WarpScanline *line, const int16_t *values,
+/* Groups may overrun a piece's end, where the next piece writes over them. Plain C renders the rest of the last one. */
+L1L2_INLINE void run_along(const L1L2WarpKernel *kernel, const L1L2WarpScanline *scanline, const int16_t *values,
                            uint8_t *dst, const int taps, const int components)
 {
-    const int group = group_of(components), count = line->count;
-    for (int k = 0; k < line->along_pieces; k++) {
-        const L1L2WarpPiece *piece = &line->along[k];
+    const int group = group_of(components), count = scanline->count;
+    for (int k = 0; k < scanline->along_pieces; k++) {
+        const L1L2WarpPiece *piece = &scanline->along[k];
         Steps steps = steps_of(piece, components);
-        const int end = end_of(line->along, k, line->along_pieces, count);
+        const int end = end_of(scanline->along, k, scanline->along_pieces, count);
         int i = piece->from;
         for (; i < end && i + group <= count; i += group, steps.at += (int64_t)group * steps.step)
             group_along(kernel, &steps, values, dst + i * components, taps, components);
@@ -241,12 +247,12 @@ SPECIALIZED void run_along(const L1L2WarpKernel *kernel, const L1L2WarpScanline 
     }
 }
 
-SPECIALIZED void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpScanline *line, uint8_t *dst,
-                     const int taps, const int components)
+L1L2_INLINE void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpScanline *scanline,
+                     uint8_t *dst, const int taps, const int components)
 {
-    int16_t values[LINE_VALUES];
-    run_down(src, kernel, line, values, taps, components);
-    run_along(kernel, line, values, dst, taps, components);
+    int16_t values[SCANLINE_VALUES];
+    run_down(src, kernel, scanline, values, taps, components);
+    run_along(kernel, scanline, values, dst, taps, components);
 }
 
-DEFINE_RUNS(l1l2_warp_scanline_run_avx2, l1l2_warp_bilinear_run_avx2)
+DEFINE_RUNS(l1l2_warp_scanline_u8_init_avx2)

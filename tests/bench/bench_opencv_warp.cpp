@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Informational: our warp beside OpenCV's warpAffine (three planes) and a memcpy, on the same 1080p I420 frames and
- * one core, in ms of CPU time a frame: best and median of many frames, taken in turns, so that all meet the same
- * machine. A set of frames larger than the caches goes round, as in a stabilizer.
+ * Informational: this library's warp compared with OpenCV's warpAffine (three planes) and a memcpy, on the same 1080p
+ * I420 frames and one core, in ms of CPU time per frame. Best and median of many frames, taken in turns so that all run
+ * under the same load. A ring of frames larger than the caches is used, as in a stabilizer.
+ *
+ * usage: bench_opencv_warp
  */
 #include <algorithm>
 #include <cmath>
@@ -24,7 +26,7 @@ namespace {
 constexpr int kWidth = 1920, kHeight = 1080, kHeld = 24, kRounds = 60;
 constexpr size_t kBytes = size_t(kWidth) * kHeight * 3 / 2;
 
-/* Band-limited noise: neither flat nor white. */
+/* Band-limited noise, with about the detail of a picture. */
 std::vector<uint8_t> make_frame(int number)
 {
     std::vector<uint8_t> frame(kBytes);
@@ -66,7 +68,7 @@ void warp_by_opencv(const L1L2Mat &map, const Planes &src, const Planes &dst, in
     }
 }
 
-/* Of this thread, which does all the work. */
+/* CPU time of this thread, which does all the work. */
 double cpu_ms()
 {
     timespec now;
@@ -126,13 +128,13 @@ int main()
     std::vector<Way> ways = {
         {"memcpy", nullptr, false, -1, {}},
         {"bilinear", bilinear, false, 0, {}},
-        {"bilinear by a mesh", bilinear, true, 0, {}},
+        {"bilinear through a mesh", bilinear, true, 0, {}},
         {"OpenCV INTER_LINEAR", nullptr, false, cv::INTER_LINEAR, {}},
         {"bicubic", bicubic, false, 0, {}},
-        {"bicubic by a mesh", bicubic, true, 0, {}},
+        {"bicubic through a mesh", bicubic, true, 0, {}},
         {"OpenCV INTER_CUBIC", nullptr, false, cv::INTER_CUBIC, {}},
         {"Lanczos, 6 taps", lanczos, false, 0, {}},
-        {"Lanczos, 6 taps, by a mesh", lanczos, true, 0, {}},
+        {"Lanczos, 6 taps, through a mesh", lanczos, true, 0, {}},
         {"OpenCV INTER_LANCZOS4, 8 taps", nullptr, false, cv::INTER_LANCZOS4, {}},
     };
     L1L2WarpMesh mesh;
@@ -146,7 +148,7 @@ int main()
             frame = (frame + 1) % kHeld;
             render(way, map, mesh, held[size_t(frame)], shown[size_t(frame)]);
         }
-    std::printf("1080p I420, one core, %d frames: ms a frame      best     median   of memcpy\n", kRounds);
+    std::printf("1080p I420, one core, %d frames: ms per frame     best     median   of memcpy\n", kRounds);
     for (Way &way : ways) {
         std::sort(way.ms.begin(), way.ms.end());
         const double copy = ways[0].ms[kRounds / 2], ms = way.ms[kRounds / 2];

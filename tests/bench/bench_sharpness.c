@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Informational: does sharpness pulse? The gradient energy of a frame, in per cent of the source's, over a pan of 0.05
- * px a frame, by kernel, for the whole frame zoomed to fill (output-size=input) and without zoom (output-size=crop).
- * Zoomed, all phases are in every frame, and it can hardly change; without zoom a frame has one phase.
+ * Informational: how much sharpness pulses. Prints the gradient energy of the output, in percent of the source's, over
+ * a pan of 0.05 px per frame, for each kernel: for a crop that is zoomed to fill the frame (output-size=input) and
+ * without zoom (output-size=crop). With zoom, every frame has all phases, so the energy hardly changes. Without zoom, a
+ * frame has one phase.
  *
  * usage: bench_sharpness [FRAME.pgm ...]     binary, 8 bits, no comment; default: a frame of the test scene
  */
@@ -92,7 +93,7 @@ static void bench(const Grey *src, L1L2StabInterpolation interpolation, bool zoo
 
 int main(int argc, char **argv)
 {
-    printf("gradient energy of a frame, %% of the source's, over a pan of %.2f px a frame\n", PAN_PX);
+    printf("gradient energy of a frame, %% of the source's, over a pan of %.2f px per frame\n", PAN_PX);
     for (int i = 1; i < argc || i == 1; i++) {
         const Grey src = argc > 1 ? read_pgm(argv[i]) : scene();
         printf("%s, %dx%d\n", argc > 1 ? argv[i] : "the test scene", src.width, src.height);

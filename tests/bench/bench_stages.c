@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Where a frame's time goes, through the public interface: ms a frame by stage, for sizes from 480p to 2160p. A clip of
- * 24 synthetic frames is played back and forth, so that rendering it does not count.
+ * Informational: the time of each stage in ms per frame, as the public interface reports it, for sizes from 480p to
+ * 2160p. A clip of 24 synthetic frames is drawn once and then played forward and backward, so that drawing does not
+ * count.
  *
  * usage: bench_stages [FRAMES [THREADS [HEIGHT]]]     default: 600 frames, as many threads as cores, all sizes
  */
@@ -94,7 +95,7 @@ int main(int argc, char **argv)
     static const int sizes[][2] = {{854, 480}, {1280, 720}, {1920, 1080}, {3840, 2160}};
     const int frames = argc > 1 ? atoi(argv[1]) : 600, threads = argc > 2 ? atoi(argv[2]) : 0;
     const int height = argc > 3 ? atoi(argv[3]) : 0;
-    printf("ms a frame, I420, defaults (window 150, bicubic), threads=%d\n", threads);
+    printf("ms per frame, I420, defaults (window 150, bicubic), threads=%d\n", threads);
     printf("size        scale  track    fit  solve   warp      wall     cpu  frames/s\n");
     for (int i = 0; i < 4; i++)
         if (height == 0 || height == sizes[i][1])

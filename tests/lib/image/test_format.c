@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The table of pixel formats against the public header and the sizes of their planes. */
 #include <string.h>
 
 #include "checkx.h"
@@ -19,13 +20,13 @@ START_TEST(every_format_of_the_public_header_is_described)
         for (int i = 0; i < info->planes; i++) {
             ck_assert_int_ge(info->plane[i].components, 1);
             ck_assert_int_le(info->plane[i].components, 4);
-            ck_assert(info->depth == 8 || info->plane[i].components != 3); /* warp_u16.h has no such */
+            ck_assert(info->depth == 8 || info->plane[i].components != 3); /* direct_u16.h has no such function */
         }
     }
 }
 END_TEST
 
-START_TEST(a_format_that_is_not_offered_has_no_description)
+START_TEST(an_unsupported_format_has_no_description)
 {
     ck_assert_ptr_null(l1l2_image_format_info(L1L2STAB_FORMAT_UNKNOWN));
     ck_assert_ptr_null(l1l2_image_format_info((L1L2StabFormat)(LAST + 1)));
@@ -130,7 +131,7 @@ int main(void)
     Suite *suite = suite_create("format");
     TCase *tc = tcase_create("format");
     tcase_add_test(tc, every_format_of_the_public_header_is_described);
-    tcase_add_test(tc, a_format_that_is_not_offered_has_no_description);
+    tcase_add_test(tc, an_unsupported_format_has_no_description);
     tcase_add_test(tc, no_name_is_used_twice);
     tcase_add_test(tc, planes_of_a_frame_have_the_right_number_of_bytes);
     tcase_add_test(tc, y42b_is_halved_across_and_not_down);

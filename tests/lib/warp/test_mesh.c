@@ -95,7 +95,7 @@ START_TEST(the_mesh_of_an_affine_map_has_its_positions)
             }
         }
         ck_assert_int_le(furthest, 1);
-        /* Only where the unrounded position lies between two phases to 2^-17 px or so. */
+        /* Only if the unrounded position lies half way between two phases, to about 2^-17 px. */
         ck_assert_int_le(differing, WIDTH * HEIGHT / 20);
         l1l2_warp_mesh_clear(&mesh);
     }
@@ -151,7 +151,7 @@ START_TEST(positions_depend_neither_on_where_a_run_begins_nor_on_the_processor)
 }
 END_TEST
 
-/* All nodes in the source frame, many on its border: no plane's positions leave the frame, at any site. */
+/* All nodes lie in the source frame, many on its border: no position of any plane leaves the frame, at any site. */
 START_TEST(nodes_inside_the_source_keep_all_positions_inside)
 {
     static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_GRAY8, L1L2STAB_FORMAT_I420, L1L2STAB_FORMAT_Y42B};

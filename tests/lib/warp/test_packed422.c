@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Packed 4:2:2 is warped as its planes are. */
+/* Packed 4:2:2 is warped as its planes are, and nothing beside the frame is written. */
 #include "warp/warp_fixture.h"
 
 static const struct {
@@ -12,7 +12,7 @@ static const struct {
     {L1L2STAB_FORMAT_VYUY, 1, 2, 0},
 };
 
-/* Where plane i's sample (u, v) is in a packed picture. */
+/* Where sample (u, v) of a plane lies in a packed picture. */
 static uint8_t *packed_sample(const Picture *packed, int layout, int plane, int u, int v)
 {
     if (plane == 0)

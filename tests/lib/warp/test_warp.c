@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The warp against a floating-point one, and its chroma against its luma. What must be exact: test_warp_exact.c. */
+/* The warp against a floating-point warp, and its chroma against its luma. test_warp_exact.c has what must be exact. */
 #include "warp/warp_reference.h"
 
 /* The loop test's index is the format. */
@@ -31,7 +31,8 @@ START_TEST(every_format_and_kernel_follows_a_floating_point_warp)
 }
 END_TEST
 
-/* These go sample by sample in all formats. The loop test's index is the interpolation. */
+/* Such maps have no scanlines: samples are rendered one by one in all formats. The loop test's index is the
+ * interpolation. */
 START_TEST(maps_that_turn_far_or_zoom_out_follow_it_too)
 {
     static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_I420, L1L2STAB_FORMAT_NV12, L1L2STAB_FORMAT_RGB,
@@ -56,7 +57,7 @@ START_TEST(maps_that_turn_far_or_zoom_out_follow_it_too)
 }
 END_TEST
 
-/* Rows are cut, not rounded, before the columns are summed: that alone would darken by 0.008. */
+/* A row's sum is cut, not rounded, before the columns are summed: without a correction this would darken by 0.008. */
 START_TEST(the_mean_level_is_kept)
 {
     L1L2Rng rng = l1l2_rng_seeded(11);
@@ -72,7 +73,7 @@ START_TEST(the_mean_level_is_kept)
     for (int v = 0; v < dst.height; v++)
         for (int u = 0; u < dst.width; u++)
             sum += *sample(&dst, 0, u, v) - reference(&cfg, &map, &src, 0, u, v, 0);
-    /* Bilinear rounds 7 bits half up in the end: 1/256 too bright. */
+    /* Bilinear rounds 7 fractional bits half up in the end, which is 1/256 too bright. */
     ck_assert_near(sum / (dst.width * dst.height), _i == L1L2STAB_INTERPOLATION_BILINEAR ? 1.0 / 256 : 0.0, 0.004);
     picture_free(&src);
     picture_free(&dst);
@@ -108,10 +109,10 @@ START_TEST(affine_maps_that_are_no_similarities_are_followed_too)
 END_TEST
 
 /*
- * Chroma against luma: a wave, drawn at every sample's own place in the frame, is warped. If the planes are warped as
- * one, the wave comes out where the map says, in each of them. Drawn twice, a quarter of a wave apart (re, im), it has
- * a phase at each sample, and the mean difference from the phase that the map says, divided by the wave's frequency,
- * is how far the plane is displaced.
+ * Chroma against luma. A wave is drawn into all planes, each sample at its own place in the frame, and warped. If the
+ * planes stay together, the wave of each plane ends where the map says. The wave is drawn twice, a quarter of a period
+ * apart (re, im), so each sample has a phase. The mean difference from the phase that the map says, divided by the
+ * wave's frequency, is the displacement of the plane.
  */
 static const double FREQUENCY[2] = {2 * PI / 23.0, 2 * PI / 31.0}; /* rad/px */
 
@@ -129,7 +130,7 @@ static void draw_wave(Picture *p, L1L2StabChromaSite site, double phase)
             }
 }
 
-/* px, along the wave's direction */
+/* The displacement of a plane, px along the wave's direction. */
 static double displacement(const L1L2Mat *map, L1L2StabChromaSite site, const Picture *re, const Picture *im, int plane)
 {
     const int left = site != L1L2STAB_CHROMA_SITE_CENTER, top = site == L1L2STAB_CHROMA_SITE_TOP_LEFT;
@@ -150,8 +151,9 @@ static double displacement(const L1L2Mat *map, L1L2StabChromaSite site, const Pi
     return atan2(sum_im, sum_re) / hypot(FREQUENCY[0], FREQUENCY[1]);
 }
 
-/* A wrong site shows only where the map is no translation: at 90 degrees by half a pixel, at a zoom of 0.6 by 0.2. The
- * maps make all phases, for a cubic with a = -0.75 displaces by up to 0.05 samples at some, and back at others. */
+/* A wrong site shows only if the map is not a translation: half a pixel at 90 degrees, 0.2 px at a zoom of 0.6. The
+ * maps have all phases, since a cubic with a = -0.75 displaces by up to 0.05 samples at some phases and back at others.
+ * */
 START_TEST(chroma_stays_where_the_luma_is)
 {
     const L1L2StabChromaSite site = (L1L2StabChromaSite)_i;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the warp must give exactly, and what it must not touch. */
+/* What the warp must give exactly, and which bytes it must not touch. */
 #include "common/mem.h"
 #include "warp/warp_fixture.h"
 
@@ -60,7 +60,7 @@ START_TEST(whole_steps_copy_and_repeat_the_edge)
 }
 END_TEST
 
-/* A mesh is weighed, an affine map of whole steps copied. */
+/* A mesh is always weighed; an affine map of whole steps is copied. */
 START_TEST(copied_steps_are_what_weighing_gives)
 {
     if (is_packed(_i))
@@ -89,7 +89,7 @@ START_TEST(copied_steps_are_what_weighing_gives)
 }
 END_TEST
 
-/* In step at the left side, a quarter of a sample out of it at the right one. */
+/* A whole step at the left side, off by a quarter of a sample at the right side. */
 START_TEST(nearly_whole_steps_are_not_copied)
 {
     Picture src = picture_new(L1L2STAB_FORMAT_GRAY8, 1200, 8), dst = picture_new(L1L2STAB_FORMAT_GRAY8, 1200, 8);

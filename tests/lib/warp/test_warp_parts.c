@@ -98,7 +98,7 @@ START_TEST(every_table_is_full)
 }
 END_TEST
 
-START_TEST(a_plane_in_full_has_its_samples_at_pixel_centres)
+START_TEST(a_plane_of_full_size_has_its_samples_at_pixel_centers)
 {
     const L1L2FormatInfo *format = l1l2_image_format_info(L1L2STAB_FORMAT_I420);
     const L1L2WarpGrid grid = l1l2_warp_grid(format, 0, (L1L2StabChromaSite)_i, 640, 360);
@@ -224,7 +224,7 @@ int main(void)
     tcase_add_test(tc, every_table_is_full);
     suite_add_tcase(suite, tc);
     tc = tcase_create("coordinates");
-    tcase_add_loop_test(tc, a_plane_in_full_has_its_samples_at_pixel_centres, 0, 3);
+    tcase_add_loop_test(tc, a_plane_of_full_size_has_its_samples_at_pixel_centers, 0, 3);
     tcase_add_loop_test(tc, halved_planes_have_their_samples_at_their_site, 0, 3);
     tcase_add_test(tc, positions_are_the_maps_to_half_a_phase);
     tcase_add_test(tc, positions_do_not_depend_on_where_a_run_begins);

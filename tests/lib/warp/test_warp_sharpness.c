@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a viewer sees of the warp in a slow pan: sharpness that does not pulse, motion without steps. */
+/* A slow pan must look right: sharpness does not pulse, and motion has no steps. */
 #include "warp/coords.h"
 #include "warp/warp_fixture.h"
 #include "warp/warp_tables.h"
@@ -7,7 +7,7 @@
 enum { FRAMES = 41 };
 static const double PAN_PX = 0.05;
 
-/* Noise with the detail of a picture: every sample is the mean of 2x2. */
+/* Noise with about the detail of a picture: every sample is the mean of 2x2 random levels. */
 static void draw_texture(Picture *p)
 {
     picture_randomize(p, 3);
@@ -30,7 +30,7 @@ static double gradient_energy(const Picture *p)
     return sum / ((p->width - 1) * (p->height - 1));
 }
 
-/* The change over the pan, as part of the most there is. */
+/* The change of the gradient energy over the pan, divided by its maximum. */
 static double pulse(L1L2StabInterpolation interpolation, double zoom)
 {
     Picture src = picture_new(L1L2STAB_FORMAT_GRAY8, 480, 360), dst = picture_new(L1L2STAB_FORMAT_GRAY8, 400, 300);
@@ -50,21 +50,21 @@ static double pulse(L1L2StabInterpolation interpolation, double zoom)
     return (most - least) / most;
 }
 
-/* The loop tests' index is the interpolation. Zoomed to fill, every frame has all phases. */
+/* The loop tests' index is the interpolation. A crop that is zoomed to fill the frame has all phases in every frame. */
 START_TEST(sharpness_does_not_pulse_when_the_crop_fills_the_frame)
 {
     ck_assert_double_le(pulse((L1L2StabInterpolation)_i, 0.9), 0.02);
 }
 END_TEST
 
-/* Without zoom a frame has one phase: the reason for the default. */
+/* Without zoom a frame has one phase, and a kernel that blurs some phases shows. This is why bicubic is the default. */
 START_TEST(without_zoom_the_default_pulses_far_less_than_bilinear)
 {
     ck_assert_double_le(pulse(L1L2STAB_INTERPOLATION_BICUBIC, 1.0), 0.5 * pulse(L1L2STAB_INTERPOLATION_BILINEAR, 1.0));
 }
 END_TEST
 
-/* 0.05 px are 51.2 phases: no sample of any frame may move by anything but 51 or 52. */
+/* 0.05 px are 51.2 phases: every sample of every frame must move by 51 or 52. */
 START_TEST(a_slow_pan_moves_without_steps)
 {
     enum { COUNT = 200 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the tests of the warp share: pictures between guard bytes, random similarities, a call of the warp. */
+/* What tests of the warp share: pictures surrounded by guard bytes, random similarities, a call of the warp. */
 #ifndef WARP_FIXTURE_H
 #define WARP_FIXTURE_H
 
@@ -12,7 +12,7 @@
 
 enum { GUARD = 37, GUARD_BYTE = 0xA5 }; /* guard bytes at each side of every row; GUARD rows above and below */
 
-/* Packed 4:2:2 is planes taken apart: tests of the planes leave it to test_warp_packed.c. */
+/* The formats in the order of their numbers. Packed 4:2:2 has no planes of its own: test_packed422.c tests it. */
 enum { FIRST_FORMAT = L1L2STAB_FORMAT_GRAY8, END_FORMAT = L1L2STAB_FORMAT_AYUV64 + 1 };
 
 static inline bool is_packed(int format)
@@ -115,7 +115,7 @@ static inline void assert_same_picture(const Picture *a, const Picture *b)
                 ck_abort_msg("%s plane %d: row %d differs", a->format->name, i, v);
 }
 
-/* Of the pictures' formats and sizes; bicubic, chroma at the left, one thread. */
+/* For the pictures' format and sizes: bicubic, chroma site left, one thread. */
 static inline L1L2WarpConfig warp_config(const Picture *src, const Picture *dst)
 {
     return (L1L2WarpConfig){
@@ -156,7 +156,7 @@ static inline double uniform(L1L2Rng *rng, double low, double high)
     return low + (high - low) * (l1l2_rng_next(rng) / 4294967296.0);
 }
 
-/* Within and somewhat beyond what the stabilizer makes: zoom 0.75..1.2, up to 0.15 rad, some px off the centre. */
+/* Maps such as the stabilizer makes, and a little beyond: zoom 0.75..1.2, up to 0.15 rad, some px off the center. */
 static inline L1L2Mat random_similarity(L1L2Rng *rng)
 {
     const double zoom = uniform(rng, 0.75, 1.2), angle = uniform(rng, -0.15, 0.15);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The warp's reference: for every sample, the sum over its taps in doubles, with positions and weights unrounded. Where
- * the warp goes by lines, a column's taps lie around the row at which the line through the output row crosses it.
+ * The warp's reference: for every sample, the sum over its taps in doubles, with unrounded positions and weights. Where
+ * the warp renders along scanlines, a column's taps lie around the row at which the scanline crosses the column.
  */
 #ifndef WARP_REFERENCE_H
 #define WARP_REFERENCE_H
@@ -26,7 +26,7 @@ static inline int clamp(int value, int low, int high)
     return value < low ? low : value > high ? high : value;
 }
 
-/* Where samples of a plane lie in the frame, by axis, from the definition of the sites. */
+/* The frame position of a sample along one axis, from the definition of the chroma sites. */
 static inline double frame_position(double index, int log2_sub, int cosited)
 {
     return index * (1 << log2_sub) + (cosited ? 0.5 : 0.5 * (1 << log2_sub));
@@ -37,7 +37,7 @@ static inline double plane_position(double at, int log2_sub, int cosited)
     return (at - frame_position(0, log2_sub, cosited)) / (1 << log2_sub);
 }
 
-/* By the definition of warp_mesh.h. */
+/* The definition of mesh.h. */
 static inline L1L2Point mesh_apply(const L1L2WarpMesh *mesh, L1L2Point p)
 {
     const double across = (p.x / mesh->width + 0.5) * (mesh->columns - 1);
@@ -50,7 +50,7 @@ static inline L1L2Point mesh_apply(const L1L2WarpMesh *mesh, L1L2Point p)
                        (1 - b) * ((1 - a) * n[0].y + a * n[1].y) + b * ((1 - a) * m[0].y + a * m[1].y)};
 }
 
-/* Output sample (u, v), also between samples, -> source position in samples of the same plane. */
+/* Output sample (u, v), where u may lie between samples, to its source position in samples of the same plane. */
 static inline L1L2Point source_position(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane, double u,
                                         int v)
 {
@@ -64,7 +64,8 @@ static inline L1L2Point source_position(const L1L2WarpConfig *cfg, const L1L2War
                        plane_position(from.y + cfg->in_height / 2.0, sub_y, top)};
 }
 
-/* The output samples between which row v crosses a column: at the sides of a mesh's cell, or any two of the map's. */
+/* Two output samples between which row v crosses a column on a straight line: the sides of a mesh's cell, or any two.
+ * */
 static inline void find_crossing(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane, int v, int column,
                                  double side[2])
 {
@@ -79,8 +80,8 @@ static inline void find_crossing(const L1L2WarpConfig *cfg, const L1L2WarpMap *m
     }
 }
 
-/* Whether a plane's columns are weighed one by one: warp_line.h. */
-static inline bool goes_by_lines(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane)
+/* True if a plane is rendered along scanlines in two passes (scanline_u8.h). */
+static inline bool uses_scanlines(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane)
 {
     const L1L2Point a = source_position(cfg, map, plane, 0, 0), b = source_position(cfg, map, plane, 1, 0);
     const double step = b.x - a.x, slope = (b.y - a.y) / step;
@@ -88,11 +89,11 @@ static inline bool goes_by_lines(const L1L2WarpConfig *cfg, const L1L2WarpMap *m
            (map->mesh || (step > 0 && step <= 4.0 / 3.0 && fabs(slope) <= 0.5));
 }
 
-/* At sample (u, v), which lies at `at`, the row around which a column's taps are. */
+/* The row around which a column's taps lie, for the sample of row v at position `at`. */
 static inline double row_of_column(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane, L1L2Point at, int v,
                                    int column)
 {
-    if (!goes_by_lines(cfg, map, plane))
+    if (!uses_scanlines(cfg, map, plane))
         return at.y;
     double side[2];
     find_crossing(cfg, map, plane, v, column, side);
@@ -132,15 +133,17 @@ static inline double reference(const L1L2WarpConfig *cfg, const L1L2WarpMap *map
 }
 
 /*
- * What may the fixed point cost on noise of full range? With G for the largest sum of a kernel's |weights| along an
- * axis and D for half the largest sum of their |slopes|:
- *   the output's rounding           0.5
- *   positions to 1/1024             2 * 255 * D * G / 2048
- *   weights to 14 bits, twice the rounding of each, for the nearest takes what is left over
- *                                   2 * 255 * G * taps / 16384; none for the bilinear's, which are exact
- *   products rounded to 7 bits before the others' axis   taps * G / 256; the bilinear's rows, 2 / 256
- * Below 1.5, so that a sample is never more than 1 from the rounded exact value. Deeper samples: all but the rounding
- * grows with their range.
+ * The largest error of the fixed point on noise of full range. G is the largest sum of a kernel's |weights| along an
+ * axis, D half the largest sum of their |slopes|:
+ *
+ *   rounding of the output                          0.5
+ *   positions rounded to 1/1024, along two axes     2 * 255 * D * G / 2048
+ *   weights rounded to 14 bits; twice for each, as the nearest tap gets what is left over
+ *                                                   2 * 255 * G * taps / 16384; 0 for bilinear, whose are exact
+ *   products rounded to 7 bits before the second axis   taps * G / 256; rows of bilinear: 2 / 256
+ *
+ * The sum is below 1.5, so a sample is never more than 1 from the rounded exact value. For deeper samples, all terms
+ * but the rounding of the output grow with their range.
  */
 static const double WORST[] = {
     [L1L2STAB_INTERPOLATION_BILINEAR] = 0.5 + 0.25 + 0.01,          /* G = 1, D = 1 */

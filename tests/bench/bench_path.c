@@ -30,8 +30,10 @@ static void describe(L1L2PathProblem *p, int count, uint64_t seed)
         p->past[i][0] = 0.001 * (i - 3), p->past[i][2] = 0.5;
     for (int t = 0; t < count; t++) {
         const double roll = uniform(&rng, -shake, shake);
-        double q[L1L2_DIM] = {0.0015 * t + 0.03 * sin(t / 25.0) + uniform(&rng, -shake, shake),
-                              0.02 * sin(t / 40.0) + uniform(&rng, -shake, shake), 0.5 * cos(roll), 0.5 * sin(roll)};
+        const double shake_x = uniform(&rng, -shake, shake);
+        const double shake_y = uniform(&rng, -shake, shake);
+        double q[L1L2_DIM] = {0.0015 * t + 0.03 * sin(t / 25.0) + shake_x,
+                              0.02 * sin(t / 40.0) + shake_y, 0.5 * cos(roll), 0.5 * sin(roll)};
         if (p->dim == 6)
             q[4] = uniform(&rng, -0.3 * shake, 0.3 * shake), q[5] = uniform(&rng, -0.3 * shake, 0.3 * shake);
         const L1L2Mat camera = l1l2_mat_from_q(q, p->dim);
@@ -53,7 +55,7 @@ static void bench(const char *name, int dim, int count, L1L2StabSolver choice, i
     for (int i = 0; i < rounds; i++) {
         describe(p, count, (uint64_t)i);
         const int64_t start_ns = l1l2_clock_ns();
-        const L1L2PathSolverReport report = l1l2_path_solver_solve(solver, choice, p, q);
+        const L1L2PathSolverReport report = l1l2_path_solver_solve(solver, choice, p->count, p, q);
         ms[i] = 1e-6 * (double)(l1l2_clock_ns() - start_ns);
         converged += report.converged;
         first += report.osqp_iterations == 1;

@@ -125,8 +125,8 @@ static void describe_window(L1L2Path *path, const L1L2PathWindow *step)
     }
 }
 
-/* A path for when no solver arrives: goes on at the last speed, which fades; the crop limits of each frame, met one
- * after the other by admit(), bend it. Feasible and continuous with what was given out, but not smooth. */
+/* A path for when no solver converges: it goes on at the last speed, which fades. The constraints of each frame, met
+ * one after the other, bend it. Feasible and continuous with what was given out, but not smooth. */
 static void hold_course(L1L2Path *path, const L1L2PathWindow *step)
 {
     const double fade = 0.95;
@@ -199,23 +199,13 @@ static void decide(L1L2Path *path, const L1L2PathWindow *step, const L1L2PathSol
     path->decided = path->start + step->first + step->emit;
 }
 
-/* AUTO: OSQP's check costs about as much as the solve. Spread over a window's frames that is nothing; where windows
- * slide by a frame or a few, the predictor's certificate stands alone. */
-static L1L2StabSolver choose_solver(const L1L2Path *path, const L1L2PathWindow *step)
-{
-    const int few_frames = 8;
-    if (path->cfg.solver != L1L2STAB_SOLVER_AUTO)
-        return path->cfg.solver;
-    return step->emit >= few_frames ? L1L2STAB_SOLVER_CHECKED : L1L2STAB_SOLVER_PREDICTOR;
-}
-
 /* A point that is not the optimum is taken where it is near enough that nobody could tell; else the course is held. */
 static void solve_window(L1L2Path *path, const L1L2PathWindow *step)
 {
     const double near_enough = 1e-4;
     describe_window(path, step);
     const L1L2PathSolverReport report =
-        l1l2_path_solver_solve(path->solver, choose_solver(path, step), path->problem, path->solution);
+        l1l2_path_solver_solve(path->solver, path->cfg.solver, step->emit, path->problem, path->solution);
     const bool usable = report.converged || report.bound <= near_enough;
     if (usable)
         update_transforms(path, step);
@@ -223,8 +213,8 @@ static void solve_window(L1L2Path *path, const L1L2PathWindow *step)
         hold_course(path, step);
     if (!report.converged)
         l1l2_log(path->cfg.log, L1L2STAB_LOG_WARN,
-                 "path: no solver arrived on a window of %d frames (objective within %.2g of its optimum)%s",
-                 step->count, report.bound, usable ? "" : ": the course is held");
+                 "path: solver did not converge on a window of %d frames (objective within %.2g of its optimum)%s",
+                 step->count, report.bound, usable ? "" : ": holding a feasible path");
     decide(path, step, &report);
 }
 

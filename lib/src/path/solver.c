@@ -8,18 +8,40 @@
 #include "path/interior_point.h"
 #include "path/problem_as_qp.h"
 
-/* To check a trusted point: OSQP accepts it at its first check, or nearly so; where it has not after this many
- * iterations it will take hundreds, and the predictor's certificate stands without it. In the problem's units the
- * tolerance is 5e-7 diagonals and 1e-5 of the weights. Measured over the windows of tests/reference: accepted at the
- * first check 96 %; with rho = 2 it were 92 %, with a tolerance of 1e-6 as well 82 %. */
+/*
+ * Parameters
+ *
+ * name                  value   unit            effect, and what chose the value
+ * --------------------  ------  --------------  ---------------------------------------------------------------------
+ * check.max_iterations  50      iterations      The check of a point that the predictor found. OSQP accepts it at its
+ *                                               first test on 481 of the 496 problems of tests/reference; where it has
+ *                                               not after 50 iterations it takes hundreds (test_solver).
+ * check.rho             0.1     -               ADMM's step: small trusts the start. With 2, OSQP accepts 92 % of these
+ *                                               problems at its first test instead of 96 %.
+ * check.tolerance       1e-5    scaled units    5e-7 diagonals in the rows of differences, 1e-5 of the weights in the
+ *                                               duals. With 1e-6, 82 % are accepted at the first test.
+ * solve.max_iterations  4000    iterations      OSQP alone, where the caller asked for it. More does not help: it ends
+ *                                               0.001 to 5 px off (docs/path.md).
+ * solve.rho             2       -               Near the best fixed value for OSQP alone.
+ * solve.tolerance       1e-6    scaled units    As above.
+ * rescue_work           240000  components x    OSQP where the predictor did not converge: 400 iterations at N = 150,
+ *                               iterations      some 80 ms of one core (bench_path). No camera path in tests/reference
+ *                                               needs it, only motions that no camera makes.
+ * rescue_work_a_frame   6000    the same, for   Some 2 ms: windows that slide by one frame need a solve for each frame,
+ *                               each frame      and keep up with the video only if it costs less than a frame lasts.
+ * rescue_least          25      iterations      Fewer are not worth OSQP's setup, which costs as much.
+ * several_frames        8       frames          AUTO: OSQP's check costs about as much as the predictor. Spread over
+ *                                               8 frames it is below 1 ms a frame at N = 150 (bench_path).
+ */
 static const L1L2PathQpSettings check_settings = {.max_iterations = 50, .rho = 0.1, .tolerance = 1e-5};
-/* To find the optimum alone. */
 static const L1L2PathQpSettings solve_settings = {.max_iterations = 4000, .rho = 2.0, .tolerance = 1e-6};
+static const int rescue_work = 240000, rescue_work_a_frame = 6000, rescue_least = 25;
+static const int several_frames = 8;
 
 struct L1L2PathSolver {
-    L1L2PathInteriorPoint *ipm;
+    L1L2PathInteriorPoint *predictor;
     L1L2PathQp *qp;
-    double *z, *y;
+    double *z, *y; /* OSQP's start, then its solution */
 };
 
 L1L2PathSolver *l1l2_path_solver_create(int capacity, int dim)
@@ -27,13 +49,13 @@ L1L2PathSolver *l1l2_path_solver_create(int capacity, int dim)
     L1L2PathSolver *s = l1l2_mem_new(1, sizeof *s);
     if (!s)
         return NULL;
-    s->ipm = l1l2_path_interior_point_create(capacity, dim);
+    s->predictor = l1l2_path_interior_point_create(capacity, dim);
     s->qp = l1l2_path_problem_as_qp_create(capacity, dim);
     if (s->qp) {
         s->z = l1l2_mem_new((size_t)s->qp->max_cols, sizeof *s->z);
         s->y = l1l2_mem_new((size_t)s->qp->max_rows, sizeof *s->y);
     }
-    if (s->ipm && s->qp && s->z && s->y)
+    if (s->predictor && s->qp && s->z && s->y)
         return s;
     l1l2_path_solver_free(s);
     return NULL;
@@ -43,14 +65,23 @@ void l1l2_path_solver_free(L1L2PathSolver *s)
 {
     if (!s)
         return;
-    l1l2_path_interior_point_free(s->ipm);
+    l1l2_path_interior_point_free(s->predictor);
     l1l2_path_qp_free(s->qp);
     l1l2_mem_free(s->z);
     l1l2_mem_free(s->y);
     l1l2_mem_free(s);
 }
 
-/* OSQP from the point in z and y, where it leaves its own. True where it arrived. */
+int l1l2_path_solver_rescue_iterations(const L1L2PathProblem *p, int emitted)
+{
+    const int work = emitted < rescue_work / rescue_work_a_frame ? emitted * rescue_work_a_frame : rescue_work;
+    const int iterations = work / (p->dim * p->count);
+    if (iterations < rescue_least)
+        return 0;
+    return iterations < solve_settings.max_iterations ? iterations : solve_settings.max_iterations;
+}
+
+/* Runs OSQP from the point in z and y, and leaves its own there. True where it converged. */
 static bool run_osqp(L1L2PathSolver *s, const L1L2PathQpSettings *settings, L1L2PathSolverReport *report)
 {
     L1L2PathQpReport qp;
@@ -62,7 +93,8 @@ static bool run_osqp(L1L2PathSolver *s, const L1L2PathQpSettings *settings, L1L2
     return qp.converged;
 }
 
-static bool take_osqp(const L1L2PathSolver *s, const L1L2PathProblem *p, double (*q)[L1L2_DIM])
+/* Copies OSQP's path to q. False, and q as it was, where it is not finite. */
+static bool take_osqp_path(const L1L2PathSolver *s, const L1L2PathProblem *p, double (*q)[L1L2_DIM])
 {
     for (int i = 0; i < p->dim * p->count; i++)
         if (!isfinite(s->z[i]))
@@ -73,42 +105,69 @@ static bool take_osqp(const L1L2PathSolver *s, const L1L2PathProblem *p, double 
     return true;
 }
 
-static void start_from_camera(L1L2PathSolver *s, const L1L2PathProblem *p)
+/* OSQP alone starts at P = C with duals of 0. */
+static void solve_by_osqp_alone(L1L2PathSolver *s, const L1L2PathProblem *p, double (*q)[L1L2_DIM],
+                                L1L2PathSolverReport *report)
 {
+    l1l2_path_problem_as_qp_fill(p, s->qp);
     memset(s->z, 0, (size_t)s->qp->cols * sizeof *s->z);
     memset(s->y, 0, (size_t)s->qp->rows * sizeof *s->y);
     for (int t = 0; t < p->count; t++)
         for (int j = 0; j < p->dim; j++)
             s->z[l1l2_path_qp_col_q(p, t, j)] = p->camera[t][j];
+    const bool converged = run_osqp(s, &solve_settings, report);
+    if (take_osqp_path(s, p, q)) {
+        report->decided_by = L1L2STAB_SOLVER_OSQP;
+        report->converged = converged;
+    }
 }
 
-L1L2PathSolverReport l1l2_path_solver_solve(L1L2PathSolver *s, L1L2StabSolver choice, const L1L2PathProblem *p,
-                                        double (*q)[L1L2_DIM])
+/* OSQP's opinion of a point that the predictor calls the optimum. */
+static void check(L1L2PathSolver *s, const L1L2PathProblem *p, const L1L2PathPoint *point,
+                  L1L2PathSolverReport *report)
+{
+    l1l2_path_problem_as_qp_fill(p, s->qp);
+    l1l2_path_problem_as_qp_point(p, point, s->z, s->y);
+    if (run_osqp(s, &check_settings, report))
+        report->decided_by = L1L2STAB_SOLVER_CHECKED;
+}
+
+/* OSQP goes on from where the predictor stopped. */
+static void rescue(L1L2PathSolver *s, const L1L2PathProblem *p, int emitted, const L1L2PathPoint *point,
+                   double (*q)[L1L2_DIM], L1L2PathSolverReport *report)
+{
+    L1L2PathQpSettings settings = solve_settings;
+    settings.max_iterations = l1l2_path_solver_rescue_iterations(p, emitted);
+    if (settings.max_iterations == 0)
+        return;
+    l1l2_path_problem_as_qp_fill(p, s->qp);
+    l1l2_path_problem_as_qp_point(p, point, s->z, s->y);
+    if (run_osqp(s, &settings, report) && take_osqp_path(s, p, q)) {
+        report->decided_by = L1L2STAB_SOLVER_OSQP;
+        report->converged = true;
+    }
+}
+
+L1L2PathSolverReport l1l2_path_solver_solve(L1L2PathSolver *s, L1L2StabSolver choice, int emitted,
+                                            const L1L2PathProblem *p, double (*q)[L1L2_DIM])
 {
     L1L2PathSolverReport report = {.decided_by = L1L2STAB_SOLVER_PREDICTOR, .bound = HUGE_VAL};
-    L1L2PathPoint point;
+    if (choice == L1L2STAB_SOLVER_AUTO)
+        choice = emitted >= several_frames ? L1L2STAB_SOLVER_CHECKED : L1L2STAB_SOLVER_PREDICTOR;
     memcpy(q, p->camera, (size_t)p->count * sizeof *q);
-    if (choice != L1L2STAB_SOLVER_OSQP) {
-        const L1L2PathInteriorPointReport ipm = l1l2_path_interior_point_solve(s->ipm, p, &point);
+    if (choice == L1L2STAB_SOLVER_OSQP) {
+        solve_by_osqp_alone(s, p, q, &report);
+    } else {
+        L1L2PathPoint point;
+        const L1L2PathInteriorPointReport found = l1l2_path_interior_point_solve(s->predictor, p, &point);
         memcpy(q, point.q, (size_t)p->count * sizeof *q);
-        report.converged = ipm.converged;
-        report.predictor_iterations = ipm.iterations;
-        report.bound = ipm.bound;
-    }
-    if (choice != L1L2STAB_SOLVER_PREDICTOR || !report.converged) {
-        l1l2_path_problem_as_qp_fill(p, s->qp);
-        if (choice == L1L2STAB_SOLVER_OSQP)
-            start_from_camera(s, p);
-        else
-            l1l2_path_problem_as_qp_point(p, &point, s->z, s->y);
-        const bool arrived = run_osqp(s, report.converged ? &check_settings : &solve_settings, &report);
-        if (report.converged) {
-            if (arrived)
-                report.decided_by = L1L2STAB_SOLVER_CHECKED;
-        } else if ((arrived || choice == L1L2STAB_SOLVER_OSQP) && take_osqp(s, p, q)) {
-            report.decided_by = L1L2STAB_SOLVER_OSQP;
-            report.converged = arrived;
-        }
+        report.converged = found.converged;
+        report.predictor_iterations = found.iterations;
+        report.bound = found.bound;
+        if (!found.converged)
+            rescue(s, p, emitted, &point, q, &report);
+        else if (choice == L1L2STAB_SOLVER_CHECKED)
+            check(s, p, &point, &report);
     }
     report.excess = l1l2_path_excess(p, (const double(*)[L1L2_DIM])q);
     return report;

@@ -96,7 +96,7 @@ static void against_the_reference(L1L2StabSolver choice, double relative, double
             int t;
             ck_assert_int_eq(fscanf(file, " lambda %lf %lf", &lambda, &objective), 2);
             describe(&w, lambda, p);
-            const L1L2PathSolverReport report = l1l2_path_solver_solve(solver[w.dim / 2 - 1], choice, p, q);
+            const L1L2PathSolverReport report = l1l2_path_solver_solve(solver[w.dim / 2 - 1], choice, p->count, p, q);
             const double found = l1l2_path_objective(p, (const double(*)[L1L2_DIM])q);
             ck_assert_msg(report.converged, "%s, lambda %g: not converged, bound %g", w.name, lambda, report.bound);
             ck_assert_msg(fabs(found - objective) <= relative * objective + 1e-9,
@@ -215,8 +215,8 @@ START_TEST(osqp_alone_comes_near_the_optimum)
     for (int round = 0; round < 4; round++) {
         random_walk(&w, 4, (uint64_t)round, 40, round, 0.01);
         describe(&w, 0.5, p);
-        ck_assert(l1l2_path_solver_solve(solver, L1L2STAB_SOLVER_CHECKED, p, best).converged);
-        const L1L2PathSolverReport report = l1l2_path_solver_solve(solver, L1L2STAB_SOLVER_OSQP, p, q);
+        ck_assert(l1l2_path_solver_solve(solver, L1L2STAB_SOLVER_CHECKED, p->count, p, best).converged);
+        const L1L2PathSolverReport report = l1l2_path_solver_solve(solver, L1L2STAB_SOLVER_OSQP, p->count, p, q);
         ck_assert_int_eq(report.decided_by, L1L2STAB_SOLVER_OSQP);
         ck_assert_near(l1l2_path_objective(p, (const double(*)[L1L2_DIM])q) /
                            l1l2_path_objective(p, (const double(*)[L1L2_DIM])best), 1.0, 1e-3);
@@ -236,10 +236,10 @@ START_TEST(the_same_window_gives_the_same_bits)
     for (int round = 0; round < 6; round++) { /* b has solved other windows before */
         random_walk(&w, 4, (uint64_t)(round % 3), 150, 3, 0.02);
         describe(&w, 0.5, p);
-        l1l2_path_solver_solve(b, L1L2STAB_SOLVER_CHECKED, p, second);
+        l1l2_path_solver_solve(b, L1L2STAB_SOLVER_CHECKED, p->count, p, second);
         if (round < 3)
             continue;
-        l1l2_path_solver_solve(a, L1L2STAB_SOLVER_CHECKED, p, first);
+        l1l2_path_solver_solve(a, L1L2STAB_SOLVER_CHECKED, p->count, p, first);
         ck_assert_mem_eq(first, second, sizeof(double) * 150 * L1L2_DIM);
     }
     l1l2_path_solver_free(a);
@@ -264,8 +264,10 @@ static void describe_long(L1L2PathProblem *p, uint64_t seed)
         p->past[i][0] = 0.001 * (i - 3), p->past[i][2] = 0.5;
     for (int t = 0; t < p->count; t++) {
         const double roll = uniform(&rng, -0.012, 0.012);
-        const double q[L1L2_DIM] = {0.0015 * t + 0.03 * sin(t / 25.0) + uniform(&rng, -0.012, 0.012),
-                                    0.02 * sin(t / 40.0) + uniform(&rng, -0.012, 0.012), 0.5 * cos(roll),
+        const double shake_x = uniform(&rng, -0.012, 0.012);
+        const double shake_y = uniform(&rng, -0.012, 0.012);
+        const double q[L1L2_DIM] = {0.0015 * t + 0.03 * sin(t / 25.0) + shake_x,
+                                    0.02 * sin(t / 40.0) + shake_y, 0.5 * cos(roll),
                                     0.5 * sin(roll)};
         const L1L2Mat camera = l1l2_mat_from_q(q, p->dim);
         l1l2_path_problem_set(p, t, &camera, 0.5, &crop);

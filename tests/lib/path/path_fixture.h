@@ -73,10 +73,13 @@ static inline Run *wandering_run(int frames, double pan_px, double wander_px, do
     L1L2Rng rng = l1l2_rng_seeded(seed);
     L1L2Mat before = l1l2_mat_identity();
     for (int t = 0; t < frames; t++) {
+        /* One draw a statement: within an expression C leaves their order to the compiler. */
         const double roll = uniform(&rng, -0.002, 0.002) * shake_px;
+        const double shake_y = uniform(&rng, -shake_px, shake_px);
+        const double shake_x = uniform(&rng, -shake_px, shake_px);
         const L1L2Mat pose = l1l2_mat_similarity(cos(roll), sin(roll),
-            (pan_px * t + wander_px * sin(t / 23.0) + uniform(&rng, -shake_px, shake_px)) / diagonal_px,
-            (wander_px * sin(t / 37.0) + uniform(&rng, -shake_px, shake_px)) / diagonal_px);
+                                                 (pan_px * t + wander_px * sin(t / 23.0) + shake_x) / diagonal_px,
+                                                 (wander_px * sin(t / 37.0) + shake_y) / diagonal_px);
         L1L2Mat inverse;
         l1l2_mat_inverse(before, &inverse);
         r->F[t] = l1l2_mat_mul(inverse, pose);

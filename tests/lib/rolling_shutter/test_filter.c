@@ -238,8 +238,12 @@ static L1L2ShutterResidual random_residual(L1L2Rng *rng, double size)
 static L1L2Mat random_map(L1L2Rng *rng, double ratio)
 {
     const L1L2PathCropWindow crop = l1l2_path_crop_window(WIDTH, HEIGHT, ratio, 4);
-    const L1L2Mat wild = l1l2_mat_similarity(uniform(rng, 0.9, 1.1), uniform(rng, -0.1, 0.1), uniform(rng, -0.3, 0.3),
-                                             uniform(rng, -0.3, 0.3));
+    /* One draw a statement: within a call C leaves their order to the compiler. */
+    const double y = uniform(rng, -0.3, 0.3);
+    const double x = uniform(rng, -0.3, 0.3);
+    const double b = uniform(rng, -0.1, 0.1);
+    const double a = uniform(rng, 0.9, 1.1);
+    const L1L2Mat wild = l1l2_mat_similarity(a, b, x, y);
     const L1L2Mat B = l1l2_path_constraint_shrink(&crop, &wild);
     return l1l2_mat_mul(l1l2_mat_rescale(B, diagonal_px), l1l2_mat_diagonal(ratio, ratio));
 }

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* The methods of the base class: who does what is in the files next to this one. What it is for is told in plugin.c. */
+/* The element: its class, its properties and states, and the methods that GstBaseTransform calls. Each method hands its
+ * work to the file that is named after it; plugin.c documents the element for its users. */
 #include "gstl1l2stab.h"
 
 #include <gst/video/video.h>
 
 #include "gstl1l2staballoc.h"
 #include "gstl1l2stabcaps.h"
-#include "gstl1l2stabcarry.h"
-#include "gstl1l2stabglue.h"
-#include "gstl1l2stabinput.h"
+#include "gstl1l2stabcopymeta.h"
+#include "gstl1l2stabconvert.h"
 #include "gstl1l2stabmeta.h"
-#include "gstl1l2staboutput.h"
+#include "gstl1l2stabflow.h"
 #include "gstl1l2stabreport.h"
 #include "gstl1l2stabsettings.h"
 
@@ -21,57 +21,15 @@ struct _GstL1L2Stab
 {
   GstBaseTransform parent;
 
-  GstL1L2StabSettings settings; /* locks by itself */
-  GstL1L2StabOutput output;     /* the frames between the pads */
+  GstL1L2StabSettings settings; /* has its own lock */
+  GstL1L2StabFlow flow;         /* the frames between the pads */
 };
 
 G_DEFINE_TYPE (GstL1L2Stab, gst_l1l2_stab, GST_TYPE_BASE_TRANSFORM);
 GST_ELEMENT_REGISTER_DEFINE (l1l2stab, "l1l2stab", GST_RANK_NONE,
     GST_TYPE_L1L2_STAB);
 
-/* --- frames and events --- */
-
-/* The base class allocates output only where there is this method. `input` is the frame whose turn it is. */
-static GstFlowReturn
-gst_l1l2_stab_transform (GstBaseTransform * trans, GstBuffer * input,
-    GstBuffer * output)
-{
-  GstL1L2Stab *self = GST_L1L2_STAB (trans);
-  GstL1L2StabStream *stream = &self->output.stream;
-  L1L2StabInfo info;
-  GstL1L2StabMap map;
-  GstFlowReturn ret;
-
-  gst_l1l2_stab_stream_set_bypass (stream,
-      gst_l1l2_stab_settings_sample_bypass (&self->settings,
-          gst_l1l2_stab_glue_stream_time (&trans->segment, input)));
-  ret = gst_l1l2_stab_stream_render (stream, output, &info);
-  if (ret != GST_FLOW_OK)
-    return ret;
-
-  gst_l1l2_stab_map_init (&map, &info, &stream->in_info, &stream->out_info);
-  gst_l1l2_stab_carry_regions (output, &map, &stream->out_info);
-  gst_l1l2_stab_report_out (&stream->report, output, &info, &map,
-      &stream->in_info, &stream->out_info);
-  if (gst_l1l2_stab_settings_post_messages (&self->settings))
-    gst_element_post_message (GST_ELEMENT_CAST (self),
-        gst_l1l2_stab_report_message (&stream->report, output, &info,
-            &trans->segment));
-  return GST_FLOW_OK;
-}
-
-/* The base class is left nothing to push. */
-static GstFlowReturn
-gst_l1l2_stab_generate_output (GstBaseTransform * trans, GstBuffer ** output)
-{
-  GstL1L2Stab *self = GST_L1L2_STAB (trans);
-
-  *output = NULL;
-  /* Key frames alone show no motion: each goes by itself. */
-  if (trans->segment.flags & GST_SEGMENT_FLAG_TRICKMODE_KEY_UNITS)
-    return gst_l1l2_stab_output_drain (&self->output);
-  return gst_l1l2_stab_output_push_ready (&self->output);
-}
+/* --- frames and events: gstl1l2stabflow.c has what happens to them --- */
 
 static GstFlowReturn
 gst_l1l2_stab_submit_input_buffer (GstBaseTransform * trans,
@@ -80,15 +38,37 @@ gst_l1l2_stab_submit_input_buffer (GstBaseTransform * trans,
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
   GstFlowReturn ret;
 
-  /* A dropped input would be a hole in the camera's path, whoever wishes it. */
+  /* A dropped input frame would be a hole in the camera path, so nobody can switch QoS on. */
   gst_base_transform_set_qos_enabled (trans, FALSE);
-  /* The base class renegotiates where it has to, and leaves the frame in queued_buf. */
+  /* The base class renegotiates if it has to, and leaves the frame in queued_buf. */
   ret = GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)
       ->submit_input_buffer (trans, is_discont, input);
   if (ret != GST_FLOW_OK)
     return ret;
-  return gst_l1l2_stab_input_frame (&self->output, &self->settings,
+  return gst_l1l2_stab_flow_take_frame (&self->flow,
       g_steal_pointer (&trans->queued_buf));
+}
+
+/* Pushes the frames that are ready, and leaves the base class nothing to push. */
+static GstFlowReturn
+gst_l1l2_stab_generate_output (GstBaseTransform * trans, GstBuffer ** output)
+{
+  GstL1L2Stab *self = GST_L1L2_STAB (trans);
+
+  *output = NULL;
+  /* Key frames alone show no motion: each one leaves by itself. */
+  if (self->flow.in_segment.flags & GST_SEGMENT_FLAG_TRICKMODE_KEY_UNITS)
+    return gst_l1l2_stab_flow_drain (&self->flow);
+  return gst_l1l2_stab_flow_push_ready (&self->flow);
+}
+
+/* Never called, because generate_output() does not. The base class allocates output buffers only for an element that
+ * has this method. */
+static GstFlowReturn
+gst_l1l2_stab_transform (GstBaseTransform * trans, GstBuffer * input,
+    GstBuffer * output)
+{
+  g_return_val_if_reached (GST_FLOW_ERROR);
 }
 
 static gboolean
@@ -96,7 +76,7 @@ gst_l1l2_stab_sink_event (GstBaseTransform * trans, GstEvent * event)
 {
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
 
-  if (gst_l1l2_stab_input_event (&self->output, event))
+  if (gst_l1l2_stab_flow_take_event (&self->flow, event))
     return TRUE;
   if (GST_EVENT_TYPE (event) == GST_EVENT_CAPS)
     gst_l1l2_stab_settings_adopt (&self->settings,
@@ -110,7 +90,7 @@ gst_l1l2_stab_src_event (GstBaseTransform * trans, GstEvent * event)
 {
   if (GST_EVENT_TYPE (event) == GST_EVENT_NAVIGATION)
     event = gst_l1l2_stab_report_point_at_source (&GST_L1L2_STAB
-        (trans)->output.stream.report, event);
+        (trans)->flow.stream.report, event);
   return GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)->src_event
       (trans, event);
 }
@@ -123,14 +103,14 @@ gst_l1l2_stab_query (GstBaseTransform * trans, GstPadDirection direction,
   const GstQueryType type = GST_QUERY_TYPE (query);
 
   if (direction == GST_PAD_SRC && type == GST_QUERY_LATENCY)
-    return gst_l1l2_stab_latency_query (&self->output.latency,
+    return gst_l1l2_stab_latency_query (&self->flow.latency,
         GST_BASE_TRANSFORM_SINK_PAD (trans), query);
   if (direction == GST_PAD_SRC && type == GST_QUERY_POSITION
-      && gst_l1l2_stab_output_query_position (&self->output, query))
+      && gst_l1l2_stab_flow_query_position (&self->flow, query))
     return TRUE;
-  /* Upstream wants its buffers back. */
+  /* Upstream wants its buffers back. The query is serialized with the frames. */
   if (direction == GST_PAD_SINK && type == GST_QUERY_DRAIN)
-    gst_l1l2_stab_output_drain (&self->output);
+    gst_l1l2_stab_flow_drain (&self->flow);
   return GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)->query (trans,
       direction, query);
 }
@@ -147,7 +127,7 @@ gst_l1l2_stab_transform_caps (GstBaseTransform * trans,
   return gst_l1l2_stab_caps_transform (&settings, direction, caps, filter);
 }
 
-/* Called when the caps of either side have changed, before the new ones go downstream. */
+/* Called when the caps of either pad have changed, before the new caps go downstream. */
 static gboolean
 gst_l1l2_stab_set_caps (GstBaseTransform * trans, GstCaps * in_caps,
     GstCaps * out_caps)
@@ -156,16 +136,16 @@ gst_l1l2_stab_set_caps (GstBaseTransform * trans, GstCaps * in_caps,
   L1L2StabConfig settings;
   GstVideoInfo in_info, out_info;
 
-  if (!gst_l1l2_stab_glue_parse_caps (&in_info, in_caps)
-      || !gst_l1l2_stab_glue_parse_caps (&out_info, out_caps))
+  if (!gst_l1l2_stab_convert_caps (&in_info, in_caps)
+      || !gst_l1l2_stab_convert_caps (&out_info, out_caps))
     return FALSE;
 
-  gst_l1l2_stab_output_drain (&self->output);
+  gst_l1l2_stab_flow_drain (&self->flow);
   gst_l1l2_stab_settings_in_use (&self->settings, &settings);
-  if (!gst_l1l2_stab_stream_open (&self->output.stream, &settings, &in_info,
+  if (!gst_l1l2_stab_stream_open (&self->flow.stream, &settings, &in_info,
           &out_info))
     return FALSE;
-  gst_l1l2_stab_latency_set (&self->output.latency, settings.window, in_caps);
+  gst_l1l2_stab_latency_set (&self->flow.latency, settings.window, in_caps);
   return TRUE;
 }
 
@@ -189,7 +169,7 @@ static gboolean
 gst_l1l2_stab_transform_meta (GstBaseTransform * trans, GstBuffer * output,
     GstMeta * meta, GstBuffer * input)
 {
-  return gst_l1l2_stab_carry_keeps (meta);
+  return gst_l1l2_stab_copy_meta_keeps (meta);
 }
 
 /* --- object --- */
@@ -201,7 +181,7 @@ gst_l1l2_stab_change_state (GstElement * element, GstStateChange transition)
 
   if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING
       || transition == GST_STATE_CHANGE_PLAYING_TO_PAUSED)
-    gst_l1l2_stab_timer_set_playing (&self->output.timer,
+    gst_l1l2_stab_timer_set_playing (&self->flow.timer,
         transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING);
   return GST_ELEMENT_CLASS (gst_l1l2_stab_parent_class)->change_state (element,
       transition);
@@ -215,19 +195,21 @@ gst_l1l2_stab_open_files (GstL1L2Stab * self)
   gboolean ok;
 
   gst_l1l2_stab_settings_dup_files (&self->settings, &motion_in, &motion_out);
-  ok = gst_l1l2_stab_motion_open (&self->output.stream.files,
+  ok = gst_l1l2_stab_motion_files_open (&self->flow.stream.files,
       GST_ELEMENT_CAST (self), motion_in, motion_out);
   gst_l1l2_stab_settings_in_use (&self->settings, &settings);
   if (ok && motion_in
-      && settings.rolling_shutter == L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY)       /* asked for: it is not the default */
+      && settings.rolling_shutter != L1L2STAB_ROLLING_SHUTTER_NONE)
     GST_ELEMENT_WARNING (self, LIBRARY, SETTINGS,
-        ("motion-in has nothing for rolling-shutter to go by."), (NULL));
+        ("The rolling shutter is not corrected, because a motion file holds the camera's motion alone. Leave motion-in "
+            "out to have it corrected, or set rolling-shutter=none."), (NULL));
   g_free (motion_in);
   g_free (motion_out);
   return ok;
 }
 
-/* Settings that contradict each other are told before there is a stream: any frame will do for the check. */
+/* Settings that contradict each other are an error before the stream begins. They do not depend on the frames, so the
+ * check assumes some. */
 static gboolean
 gst_l1l2_stab_start (GstBaseTransform * trans)
 {
@@ -238,16 +220,16 @@ gst_l1l2_stab_start (GstBaseTransform * trans)
   gst_l1l2_stab_settings_in_use (&self->settings, &settings);
   settings.format = L1L2STAB_FORMAT_GRAY8;
   settings.width = settings.height = GST_L1L2_STAB_MIN_SIZE;
-  gst_l1l2_stab_glue_logger (&settings.logger, &self->output.stream.log);
+  gst_l1l2_stab_convert_logger (&settings.logger, &self->flow.stream.log);
   delay = l1l2stab_config_delay (&settings);
   if (delay < 0) {
-    gst_l1l2_stab_glue_flow (GST_ELEMENT_CAST (self), delay,
-        &self->output.stream.log);
+    gst_l1l2_stab_convert_result (GST_ELEMENT_CAST (self), delay,
+        &self->flow.stream.log);
     return FALSE;
   }
 
-  gst_l1l2_stab_latency_set (&self->output.latency, settings.window, NULL);
-  gst_l1l2_stab_report_start (&self->output.stream.report);
+  gst_l1l2_stab_latency_set (&self->flow.latency, settings.window, NULL);
+  gst_l1l2_stab_report_start (&self->flow.stream.report);
   return gst_l1l2_stab_open_files (self);
 }
 
@@ -256,7 +238,7 @@ gst_l1l2_stab_stop (GstBaseTransform * trans)
 {
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
 
-  gst_l1l2_stab_output_stop (&self->output);
+  gst_l1l2_stab_flow_stop (&self->flow);
   gst_l1l2_stab_settings_release (&self->settings);
   return TRUE;
 }
@@ -269,9 +251,9 @@ gst_l1l2_stab_get_stats (GstL1L2Stab * self)
 
   gst_l1l2_stab_settings_in_use (&self->settings, &settings);
   GST_OBJECT_LOCK (self);
-  latency = self->output.latency.latency;
+  latency = self->flow.latency.latency;
   GST_OBJECT_UNLOCK (self);
-  return gst_l1l2_stab_report_stats (&self->output.stream.report,
+  return gst_l1l2_stab_report_stats (&self->flow.stream.report,
       settings.window, latency);
 }
 
@@ -301,7 +283,7 @@ gst_l1l2_stab_finalize (GObject * object)
 {
   GstL1L2Stab *self = GST_L1L2_STAB (object);
 
-  gst_l1l2_stab_output_clear (&self->output);
+  gst_l1l2_stab_flow_clear (&self->flow);
   gst_l1l2_stab_settings_clear (&self->settings);
   G_OBJECT_CLASS (gst_l1l2_stab_parent_class)->finalize (object);
 }
@@ -324,7 +306,7 @@ gst_l1l2_stab_class_init (GstL1L2StabClass * klass)
 
   gst_l1l2_stab_caps_add_templates (element_class);
   gst_element_class_set_static_metadata (element_class, "Video stabilizer",
-      "Filter/Effect/Video", "Steadies shaken video, one window of frames late",
+      "Filter/Effect/Video", "Stabilizes shaky video, with a delay of one window of frames",
       "The l1l2stab authors");
 
   element_class->change_state = GST_DEBUG_FUNCPTR (gst_l1l2_stab_change_state);
@@ -356,13 +338,13 @@ gst_l1l2_stab_init (GstL1L2Stab * self)
   GstBaseTransform *trans = GST_BASE_TRANSFORM_CAST (self);
 
   gst_l1l2_stab_settings_init (&self->settings, GST_OBJECT_CAST (self));
-  gst_l1l2_stab_output_init (&self->output, trans);
+  gst_l1l2_stab_flow_init (&self->flow, trans, &self->settings);
 
   gst_base_transform_set_passthrough (trans, FALSE);
   gst_base_transform_set_in_place (trans, FALSE);
   gst_base_transform_set_qos_enabled (trans, FALSE);
-  /* What is neutral stays neutral: the flag of such a frame is kept. */
+  /* The flag GAP of a frame is kept. */
   gst_base_transform_set_gap_aware (trans, TRUE);
-  /* With output-size=crop, downstream's size is not the one to ask upstream for. */
+  /* With output-size=crop, the size that downstream prefers is not the size to ask upstream for. */
   gst_base_transform_set_prefer_passthrough (trans, FALSE);
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "gstl1l2stablatency.h"
 
-/* Where the caps do not say: too long a latency does less harm than none. */
+#include "gstl1l2stabconvert.h"
+
+/* The frame rate that is assumed if the caps have none: a latency that is too long does less harm than none. */
 #define ASSUMED_FPS_N 25
 #define ASSUMED_FPS_D 1
 
@@ -12,7 +14,7 @@ gst_l1l2_stab_latency_init (GstL1L2StabLatency * latency, GstElement * element)
   latency->element = element;
 }
 
-/* The rate; of a variable one the highest, which the caps may know. */
+/* The frame rate, or the highest one if the rate is variable and the caps have it. */
 static gboolean
 get_rate (const GstStructure * structure, gint * fps_n, gint * fps_d)
 {
@@ -34,7 +36,8 @@ gst_l1l2_stab_latency_set (GstL1L2StabLatency * latency, gint window,
     fps_n = ASSUMED_FPS_N;
     fps_d = ASSUMED_FPS_D;
   }
-  time = gst_util_uint64_scale (window * GST_SECOND, fps_d, fps_n);
+  time = MIN (gst_util_uint64_scale (window * GST_SECOND, fps_d, fps_n),
+      GST_CLOCK_TIME_NONE - 1);
 
   GST_OBJECT_LOCK (latency->element);
   changed = latency->latency != time;
@@ -62,9 +65,9 @@ gst_l1l2_stab_latency_query (GstL1L2StabLatency * latency, GstPad * sink_pad,
   GST_OBJECT_LOCK (latency->element);
   latency->has_upstream = TRUE;
   latency->is_live = live;
-  least += latency->latency;
+  least = gst_l1l2_stab_convert_add_times (least, latency->latency);
   if (GST_CLOCK_TIME_IS_VALID (most))
-    most += latency->latency;
+    most = gst_l1l2_stab_convert_add_times (most, latency->latency);
   GST_OBJECT_UNLOCK (latency->element);
   gst_query_set_latency (query, live, least, most);
   return TRUE;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* How long frames are held back: the window, as a time. It is told to whoever asks and kept to. */
+/* The latency of the element: the duration of a window of frames. It answers latency queries, and gives the time after
+ * which a frame has to leave so that the answer is true. */
 #ifndef GST_L1L2_STAB_LATENCY_H
 #define GST_L1L2_STAB_LATENCY_H
 
@@ -12,28 +13,30 @@ typedef struct
 {
   GstElement *element;          /* its object lock guards the rest; not owned */
   GstClockTime latency;         /* `window` frame durations */
-  GstClockTime limit;           /* after which a frame has to leave: half a duration sooner, for the time it takes */
-  gboolean has_upstream;        /* upstream has answered ... */
-  gboolean is_live;             /* ... whether it is live */
+  GstClockTime limit;           /* a frame leaves after this time: half a duration less, which is left for rendering */
+  gboolean has_upstream;        /* upstream has answered a latency query ... */
+  gboolean is_live;             /* ... and this is its answer */
 } GstL1L2StabLatency;
 
 void gst_l1l2_stab_latency_init (GstL1L2StabLatency * latency,
     GstElement * element);
 
-/* A window of frames of these caps: when that changes the latency, a message is posted. NULL: a new stream, of which
- * nothing is known yet. */
+/* Sets the latency to a window of frames of these caps, and posts a latency message if it changed. NULL: a new stream,
+ * whose caps are not known yet. */
 void gst_l1l2_stab_latency_set (GstL1L2StabLatency * latency, gint window,
     const GstCaps * caps);
 
-/* Answers the query of the source pad: upstream's latency and ours. */
+/* Answers a latency query of the source pad: the latency of upstream plus that of the element. Sums that would overflow
+ * are the largest valid time. FALSE: upstream did not answer. */
 gboolean gst_l1l2_stab_latency_query (GstL1L2StabLatency * latency,
     GstPad * sink_pad, GstQuery * query);
 
-/* How long a frame may be held, so that it leaves within the latency; *grace, which may be NULL: what is left then. */
+/* The time for which a frame may be held, so that it leaves within the latency. *grace, which may be NULL: the rest of
+ * the latency. */
 GstClockTime gst_l1l2_stab_latency_limit (GstL1L2StabLatency * latency,
     GstClockTime * grace);
 
-/* Is the source live? Upstream is asked where it has not been. */
+/* True if upstream is live. Upstream is asked the first time. */
 gboolean gst_l1l2_stab_latency_is_live (GstL1L2StabLatency * latency,
     GstPad * sink_pad);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Where a point of the source is in the output, and back. Pixels, origin at the picture's top left corner, x right, y
- * down: as metas and navigation events count. Matrices are 3x3, row-major. */
+/* Maps between the pixels of an output frame and those of its source frame. The origin is the top left corner of the
+ * frame, x points right and y down, as in metas and navigation events. Matrices are those of gstl1l2stabmatrix.h. */
 #ifndef GST_L1L2_STAB_MAP_H
 #define GST_L1L2_STAB_MAP_H
 
@@ -11,19 +11,16 @@ G_BEGIN_DECLS
 
 typedef struct
 {
-  gdouble to_source[9];         /* output to source */
-  gdouble to_output[9];         /* and its inverse */
+  gdouble to_source[9];         /* from a point of the output to the point of the source that it shows */
+  gdouble to_output[9];         /* its inverse */
 } GstL1L2StabMap;
 
-/* Of the frame that `info` describes. */
+/* Sets up the maps of the frame that `info` describes. */
 void gst_l1l2_stab_map_init (GstL1L2StabMap * map, const L1L2StabInfo * info,
     const GstVideoInfo * in_info, const GstVideoInfo * out_info);
 
-/* FALSE: beyond the horizon. */
-gboolean gst_l1l2_stab_map_point (const gdouble matrix[9], gdouble * x,
-    gdouble * y);
-
-/* The upright box around a box, to the nearest pixel and within width x height. FALSE: nothing of it is. */
+/* Replaces a box by the upright box around its image, rounded to the nearest pixel and clipped to width x height.
+ * FALSE: nothing of it is left. */
 gboolean gst_l1l2_stab_map_box (const gdouble matrix[9], guint width,
     guint height, GstVideoRectangle * box);
 

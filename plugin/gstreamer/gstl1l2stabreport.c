@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "gstl1l2stabreport.h"
 
+#include "gstl1l2stabmatrix.h"
 #include "gstl1l2stabmeta.h"
 
 void
@@ -211,7 +212,7 @@ gst_l1l2_stab_report_point_at_source (GstL1L2StabReport * report,
   if (has_map && structure
       && gst_structure_get (structure, "pointer_x", G_TYPE_DOUBLE, &x,
           "pointer_y", G_TYPE_DOUBLE, &y, NULL)
-      && gst_l1l2_stab_map_point (map.to_source, &x, &y)) {
+      && gst_l1l2_stab_matrix_map_point (map.to_source, &x, &y)) {
     event = gst_event_make_writable (event);
     gst_structure_set (gst_event_writable_structure (event),
         "pointer_x", G_TYPE_DOUBLE, x, "pointer_y", G_TYPE_DOUBLE, y, NULL);

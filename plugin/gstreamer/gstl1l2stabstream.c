@@ -5,23 +5,23 @@
 
 #define GST_CAT_DEFAULT gst_l1l2_stab_debug
 
-/* A frame that the library holds. */
+/* A frame that the library holds. The library releases it after it has rendered it. */
 typedef struct
 {
   GList link;                   /* in `queue` */
-  GQueue *queue;                /* NULL: in none yet */
-  GstBuffer *buffer;            /* timestamps, flags, metas; the pixels too, unless they were copied */
-  GstVideoFrame pixels;         /* mapped for reading; has a reference of its own */
+  GQueue *queue;                /* NULL: not in a queue yet */
+  GstBuffer *buffer;            /* timestamps, flags and metas; the pixels too, unless they were copied */
+  GstVideoFrame pixels;         /* mapped for reading; holds a reference to the buffer that is mapped */
   GstClockTime arrival;         /* running time, or NONE */
-  GstClockTime time;            /* stream time, or NONE */
-  GstL1L2StabMotion motion;     /* if it was read */
+  GstClockTime stream_time;     /* or NONE */
+  GstL1L2StabMotion motion;     /* of motion-in, if there is one */
 } HeldFrame;
 
-/* An event that must not overtake the frames that came before it. */
+/* An event that must not overtake the frames that came in before it. */
 typedef struct
 {
   GstEvent *event;
-  guint64 n_before;             /* frames that came in before it */
+  guint64 n_before;             /* number of frames that came in before it */
 } WaitingEvent;
 
 void
@@ -38,7 +38,7 @@ gst_l1l2_stab_stream_init (GstL1L2StabStream * stream, GstElement * element)
 static GstFlowReturn
 flow (GstL1L2StabStream * stream, L1L2StabResult result)
 {
-  return gst_l1l2_stab_glue_flow (stream->element, result, &stream->log);
+  return gst_l1l2_stab_convert_result (stream->element, result, &stream->log);
 }
 
 static void
@@ -64,12 +64,12 @@ gst_l1l2_stab_stream_open (GstL1L2StabStream * stream,
   stream->out_info = *out_info;
   stream->window = settings->window;
 
-  gst_l1l2_stab_glue_config (&config, in_info);
-  gst_l1l2_stab_glue_logger (&config.logger, &stream->log);
+  gst_l1l2_stab_convert_config (&config, in_info);
+  gst_l1l2_stab_convert_logger (&config.logger, &stream->log);
   if (flow (stream, l1l2stab_create (&stream->stab, &config)) != GST_FLOW_OK)
     return FALSE;
   gst_l1l2_stab_report_use (&stream->report, stream->stab);
-  return gst_l1l2_stab_motion_begin (&stream->files, in_info);
+  return gst_l1l2_stab_motion_files_begin (&stream->files, in_info);
 }
 
 void
@@ -105,7 +105,7 @@ held_frame_free (gpointer data)
   g_free (held);
 }
 
-/* Metas that belong to the memory, or keep another buffer's, do not go with a copy. */
+/* Metas that describe the memory, or keep the memory of another buffer alive, are not kept with a copy. */
 static gboolean
 drop_memory_meta (GstBuffer * buffer, GstMeta ** meta, gpointer user_data)
 {
@@ -119,7 +119,7 @@ drop_memory_meta (GstBuffer * buffer, GstMeta ** meta, gpointer user_data)
   return TRUE;
 }
 
-/* The pixels are copied, and upstream's buffer goes back at once; what else it carries stays with an empty one. */
+/* Copies the pixels, so that upstream gets its buffer back at once. An empty buffer keeps the metadata. */
 static GstBuffer *
 copy_scarce (GstL1L2StabStream * stream, HeldFrame * held)
 {
@@ -127,8 +127,8 @@ copy_scarce (GstL1L2StabStream * stream, HeldFrame * held)
   GstBuffer *copy;
 
   if (!stream->own_pool) {
-    GST_INFO_OBJECT (stream->element, "upstream cannot lend %u buffers: "
-        "its frames are copied", stream->window);
+    GST_INFO_OBJECT (stream->element, "upstream has too few buffers to hold "
+        "%u of them: frames are copied", stream->window);
     stream->own_pool = gst_l1l2_stab_alloc_own_pool (&stream->in_info);
   }
   if (!stream->own_pool)
@@ -142,7 +142,7 @@ copy_scarce (GstL1L2StabStream * stream, HeldFrame * held)
   return copy;
 }
 
-/* NULL: the buffer cannot be read as a frame. */
+/* Takes `buffer`. NULL: it cannot be mapped as a frame of the caps. */
 static HeldFrame *
 held_frame_new (GstL1L2StabStream * stream, GstBuffer * buffer)
 {
@@ -181,7 +181,7 @@ gst_l1l2_stab_stream_set_live (GstL1L2StabStream * stream, gdouble lambda,
 
 GstFlowReturn
 gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer,
-    GstClockTime arrival, GstClockTime time)
+    GstClockTime arrival, GstClockTime stream_time)
 {
   L1L2StabFrame frame = { 0 };
   L1L2StabResult result;
@@ -189,17 +189,18 @@ gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer,
 
   if (!held) {
     GST_ELEMENT_ERROR (stream->element, STREAM, FORMAT,
-        ("A buffer does not hold a frame of its caps."), (NULL));
+        ("A buffer is too small for a frame of its caps."), (NULL));
     return GST_FLOW_ERROR;
   }
 
-  gst_l1l2_stab_glue_planes (&frame, &held->pixels);
+  gst_l1l2_stab_convert_planes (&frame, &held->pixels);
   frame.pts = (gint64) GST_BUFFER_PTS (held->buffer);
   frame.opaque = held;
   frame.release = held_frame_free;
   held->arrival = arrival;
-  held->time = time;
-  if (!gst_l1l2_stab_motion_read (&stream->files, time, &held->motion, &frame)) {
+  held->stream_time = stream_time;
+  if (!gst_l1l2_stab_motion_files_read (&stream->files, stream_time,
+          &held->motion, &frame)) {
     held_frame_free (held);
     return GST_FLOW_ERROR;
   }
@@ -224,11 +225,11 @@ has_been_held (const HeldFrame * held, GstClockTime limit, GstClockTime now,
   const GstClockTime pts = GST_BUFFER_PTS (held->buffer);
 
   if (GST_CLOCK_TIME_IS_VALID (now) && GST_CLOCK_TIME_IS_VALID (held->arrival)
-      && now >= held->arrival + limit)
+      && now >= gst_l1l2_stab_convert_add_times (held->arrival, limit))
     return TRUE;
-  /* Backward, too: timestamps fall in a reverse playback. */
+  /* The distance, because timestamps fall in reverse playback. */
   return GST_CLOCK_TIME_IS_VALID (position) && GST_CLOCK_TIME_IS_VALID (pts)
-      && ABS (GST_CLOCK_DIFF (pts, position)) >= (GstClockTimeDiff) limit;
+      && gst_l1l2_stab_convert_time_distance (pts, position) >= limit;
 }
 
 GstFlowReturn
@@ -243,7 +244,7 @@ gst_l1l2_stab_stream_hurry (GstL1L2StabStream * stream, GstClockTime limit,
     n++;
   if (n == 0)
     return GST_FLOW_OK;
-  GST_LOG_OBJECT (stream->element, "%d of %u frames cannot wait for more", n,
+  GST_LOG_OBJECT (stream->element, "%d of %u held frames are overdue", n,
       stream->held.length);
   return flow (stream, l1l2stab_hurry (stream->stab, n));
 }
@@ -256,21 +257,27 @@ gst_l1l2_stab_stream_due_time (const GstL1L2StabStream * stream,
 
   if (!oldest || !GST_CLOCK_TIME_IS_VALID (oldest->arrival))
     return GST_CLOCK_TIME_NONE;
-  return oldest->arrival + limit;
+  return gst_l1l2_stab_convert_add_times (oldest->arrival, limit);
 }
 
 GstFlowReturn
-gst_l1l2_stab_stream_peek (GstL1L2StabStream * stream, GstBuffer ** next)
+gst_l1l2_stab_stream_peek (GstL1L2StabStream * stream, GstBuffer ** next,
+    GstClockTime * stream_time)
 {
-  void *held = NULL;
+  void *opaque = NULL;
   L1L2StabResult result;
 
   *next = NULL;
+  *stream_time = GST_CLOCK_TIME_NONE;
   if (!stream->stab)
     return GST_FLOW_OK;
-  result = l1l2stab_peek (stream->stab, NULL, &held);
-  if (result == L1L2STAB_OK)
-    *next = ((HeldFrame *) held)->buffer;
+  result = l1l2stab_peek (stream->stab, NULL, &opaque);
+  if (result == L1L2STAB_OK) {
+    const HeldFrame *held = opaque;
+
+    *next = held->buffer;
+    *stream_time = held->stream_time;
+  }
   return flow (stream, result);
 }
 
@@ -287,25 +294,25 @@ gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output,
 {
   const HeldFrame *held = g_queue_peek_head (&stream->held);
   const GstL1L2StabMotion motion = held->motion;
-  const GstClockTime time = held->time;
+  const GstClockTime stream_time = held->stream_time;
   L1L2StabFrame frame = { 0 };
   L1L2StabResult result;
   GstVideoFrame pixels;
 
   if (!gst_video_frame_map (&pixels, &stream->out_info, output, GST_MAP_WRITE)) {
     GST_ELEMENT_ERROR (stream->element, RESOURCE, WRITE,
-        ("An output buffer does not hold a frame of its caps."), (NULL));
+        ("An output buffer is too small for a frame of its caps."), (NULL));
     return GST_FLOW_ERROR;
   }
-  gst_l1l2_stab_glue_planes (&frame, &pixels);
+  gst_l1l2_stab_convert_planes (&frame, &pixels);
   result = l1l2stab_pull (stream->stab, &frame, info);
   gst_video_frame_unmap (&pixels);
 
   if (result != L1L2STAB_OK)
     return flow (stream, result);
   stream->n_out++;
-  return gst_l1l2_stab_motion_write (&stream->files, time, &motion, info) ?
-      GST_FLOW_OK : GST_FLOW_ERROR;
+  return gst_l1l2_stab_motion_files_write (&stream->files, stream_time,
+      &motion, info) ? GST_FLOW_OK : GST_FLOW_ERROR;
 }
 
 GstFlowReturn

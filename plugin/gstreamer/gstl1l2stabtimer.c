@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "gstl1l2stabtimer.h"
 
-#include "gstl1l2stabglue.h"
+#include "gstl1l2stabconvert.h"
 
 #define GST_CAT_DEFAULT gst_l1l2_stab_debug
 
@@ -28,7 +28,7 @@ gst_l1l2_stab_timer_clear (GstL1L2StabTimer * timer)
   g_rec_mutex_clear (&timer->task_lock);
 }
 
-/* Waits for the time that is due now, with the lock, which is let go of meanwhile. TRUE: it has come. */
+/* Waits until the time that is due. Called with the lock held, and releases it while waiting. TRUE: the time has come. */
 static gboolean
 wait_until_due (GstL1L2StabTimer * timer, GstClock * clock)
 {
@@ -37,6 +37,7 @@ wait_until_due (GstL1L2StabTimer * timer, GstClock * clock)
   GstClockReturn result;
 
   timer->id = id;
+  timer->waiting_for = timer->due;
   g_mutex_unlock (&timer->lock);
   result = gst_clock_id_wait (id, NULL);
   g_mutex_lock (&timer->lock);
@@ -46,14 +47,14 @@ wait_until_due (GstL1L2StabTimer * timer, GstClock * clock)
   if (result == GST_CLOCK_OK || result == GST_CLOCK_EARLY)
     return timer->playing && !timer->stopping;
   if (result != GST_CLOCK_UNSCHEDULED) {
-    GST_WARNING_OBJECT (timer->element, "the clock cannot be waited for: "
-        "frames leave only when others come in");
+    GST_WARNING_OBJECT (timer->element, "waiting on the clock failed: "
+        "frames leave only when other frames come in");
     timer->due = GST_CLOCK_TIME_NONE;
   }
   return FALSE;
 }
 
-/* One round of the task. */
+/* The function of the task, which calls it again and again. */
 static void
 wait_once (gpointer user_data)
 {
@@ -98,6 +99,8 @@ gst_l1l2_stab_timer_set (GstL1L2StabTimer * timer, GstClockTime due)
       gst_task_set_lock (timer->task, &timer->task_lock);
       gst_task_start (timer->task);
     }
+    if (timer->id && due < timer->waiting_for)
+      gst_clock_id_unschedule (timer->id);
     g_cond_signal (&timer->changed);
   }
   g_mutex_unlock (&timer->lock);

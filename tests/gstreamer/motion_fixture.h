@@ -80,13 +80,20 @@ write_file (const gchar * name, const gchar * text)
   g_free (path);
 }
 
+/* Frame `index` of the clip, with the timestamp of frame `timestamp`. */
 static inline void
-push_frame (GstHarness * h, guint index)
+push_frame_at (GstHarness * h, guint index, guint timestamp)
 {
   GstBuffer *buffer = stab_noise_new (index < CUT ? index : index + 1000);
 
-  GST_BUFFER_PTS (buffer) = index * FRAME_DURATION;
+  GST_BUFFER_PTS (buffer) = timestamp * FRAME_DURATION;
   fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
+}
+
+static inline void
+push_frame (GstHarness * h, guint index)
+{
+  push_frame_at (h, index, index);
 }
 
 static inline void

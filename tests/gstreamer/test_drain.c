@@ -62,7 +62,7 @@ GST_START_TEST (a_new_window_begins_after_a_new_segment)
   GstHarness *h = harness_with_frames (2 * WINDOW);
   GString *out = stab_record_new (h);
 
-  gst_harness_push_event (h, segment_event (0));
+  gst_harness_push_event (h, segment_event (30 * FRAME_DURATION));
   fail_unless_equals_string (out->str, "f9 f10 f11 f12 f13 f14 f15 segment ");
   g_string_truncate (out, 0);
   stab_push_frames (h, 30, WINDOW - 1);

@@ -92,6 +92,22 @@ GST_START_TEST (upstreams_least_and_most_are_both_raised)
 
 GST_END_TEST;
 
+GST_START_TEST (a_latency_that_would_overflow_is_the_largest_one)
+{
+  const GstClockTime largest = GST_CLOCK_TIME_NONE - 1;
+  const Latency live = { TRUE, largest - GST_MSECOND, largest };
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", 10, NULL);
+  Latency latency;
+
+  upstream = &live;
+  fail_unless (ask (h, &latency));
+  fail_unless_equals_uint64 (latency.least, largest);
+  fail_unless_equals_uint64 (latency.most, largest);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (without_an_answer_upstream_there_is_none)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", 10, NULL);
@@ -171,6 +187,7 @@ latency_suite (void)
   tcase_add_loop_test (tc, the_latency_is_the_window_in_frames, 0,
       G_N_ELEMENTS (cases));
   tcase_add_test (tc, upstreams_least_and_most_are_both_raised);
+  tcase_add_test (tc, a_latency_that_would_overflow_is_the_largest_one);
   tcase_add_test (tc, without_an_answer_upstream_there_is_none);
   tcase_add_test (tc, before_the_caps_are_known_25_frames_a_second_are_assumed);
   tcase_add_test (tc,

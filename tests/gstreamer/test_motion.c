@@ -2,10 +2,14 @@
 /* Motion files: what one run writes another reads, to the bit. */
 #include "motion_fixture.h"
 
-/* The pictures of a clip with a cut, one after the other; *analysis: ns a frame. */
+/* No frame has the timestamp of the frame before it. */
+#define NO_FRAME N_FRAMES
+
+/* The pictures of a clip with a cut, one after the other. Frame `repeated` and the one after it have the timestamp of the
+ * frame before. *analysis: ns per frame. */
 static GByteArray *
 run (const gchar * in, const gchar * out, L1L2StabMotionModel model,
-    guint64 * analysis)
+    guint repeated, guint64 * analysis)
 {
   static const gchar *stages[] = { "scale-time", "track-time", "fit-time" };
   GByteArray *pictures = g_byte_array_new ();
@@ -18,7 +22,7 @@ run (const gchar * in, const gchar * out, L1L2StabMotionModel model,
   g_object_set (h->element, "motion-model", model, NULL);
   play (h);
   for (i = 0; i < N_FRAMES; i++)
-    push_frame (h, i);
+    push_frame_at (h, i, i == repeated || i == repeated + 1 ? repeated - 1 : i);
   gst_harness_push_event (h, gst_event_new_eos ());
   while ((buffer = gst_harness_try_pull (h)) != NULL) {
     GstMapInfo map;
@@ -41,11 +45,12 @@ run (const gchar * in, const gchar * out, L1L2StabMotionModel model,
   return pictures;
 }
 
-GST_START_TEST (a_second_run_gives_the_same_bytes_without_analysis)
+static void
+assert_second_run_is_the_same (L1L2StabMotionModel model, guint repeated)
 {
   guint64 first_analysis, second_analysis;
-  GByteArray *one = run (NULL, "a", __i__, &first_analysis);
-  GByteArray *two = run ("a", "b", __i__, &second_analysis);
+  GByteArray *one = run (NULL, "a", model, repeated, &first_analysis);
+  GByteArray *two = run ("a", "b", model, repeated, &second_analysis);
   gchar *a = contents ("a"), *b = contents ("b");
 
   fail_unless_equals_int (one->len, N_FRAMES * NOISE_WIDTH * NOISE_HEIGHT);
@@ -58,6 +63,43 @@ GST_START_TEST (a_second_run_gives_the_same_bytes_without_analysis)
   g_byte_array_unref (two);
   g_free (a);
   g_free (b);
+}
+
+GST_START_TEST (a_second_run_gives_the_same_bytes_without_analysis)
+{
+  assert_second_run_is_the_same (__i__, NO_FRAME);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (a_second_run_with_repeated_timestamps_gives_the_same_bytes)
+{
+  assert_second_run_is_the_same (L1L2STAB_MOTION_MODEL_SIMILARITY, 10);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (frames_that_share_a_timestamp_have_a_line_each)
+{
+  static const guint timestamps[] = { 0, 1, 1, 1, 2, 3, 3 };
+  GstHarness *h = harness_new (NULL, "a");
+  gchar **lines, *text;
+  guint i;
+
+  play (h);
+  for (i = 0; i < G_N_ELEMENTS (timestamps); i++)
+    push_frame_at (h, i, timestamps[i]);
+  gst_harness_push_event (h, gst_event_new_eos ());
+  text = contents ("a");
+  lines = g_strsplit (text, "\n", -1);
+  fail_unless_equals_int (g_strv_length (lines),
+      4 + G_N_ELEMENTS (timestamps) + 1);
+  for (i = 0; i < G_N_ELEMENTS (timestamps); i++)
+    fail_unless_equals_uint64 (g_ascii_strtoull (lines[4 + i], NULL, 10),
+        timestamps[i] * FRAME_DURATION);
+  g_strfreev (lines);
+  g_free (text);
+  stab_harness_free (h);
 }
 
 GST_END_TEST;
@@ -185,6 +227,9 @@ motion_suite (void)
   tcase_add_checked_fixture (tc, make_folder, remove_folder);
   tcase_add_loop_test (tc, a_second_run_gives_the_same_bytes_without_analysis,
       L1L2STAB_MOTION_MODEL_TRANSLATION, L1L2STAB_MOTION_MODEL_AFFINE + 1);
+  tcase_add_test (tc,
+      a_second_run_with_repeated_timestamps_gives_the_same_bytes);
+  tcase_add_test (tc, frames_that_share_a_timestamp_have_a_line_each);
   tcase_add_test (tc,
       the_file_is_whole_when_the_stream_ends_and_reads_as_documented);
   tcase_add_test (tc,

@@ -77,6 +77,55 @@ GST_START_TEST (frames_that_are_left_out_or_run_backward_find_their_motion)
 
 GST_END_TEST;
 
+/* Lines 0 1 1 1 2 3 3 4, by their times in frames; line i is a pan by i pixels. */
+static void
+write_repeated_pans (void)
+{
+  static const guint times[] = { 0, 1, 1, 1, 2, 3, 3, 4 };
+  GString *text = g_string_new ("l1l2stab-motion 1\nframerate 25/1\n");
+  guint i;
+
+  for (i = 0; i < G_N_ELEMENTS (times); i++)
+    g_string_append_printf (text, "%" G_GUINT64_FORMAT
+        " 0 given 1 0 0 1 0 %u 0 1 0\n", times[i] * FRAME_DURATION, i);
+  write_file ("in", text->str);
+  g_string_free (text, TRUE);
+}
+
+GST_START_TEST (frames_with_one_timestamp_take_its_lines_in_order)
+{
+  static const guint forward[] = { 0, 1, 1, 1, 1, 2, 3, 4 };
+  static const gdouble motions[] = { 1, 2, 3, 0, 4, 5, 6 + 7 };
+  static const guint backward[] = { 4, 3, 3, 2 };
+  GstHarness *h = harness_new ("in", NULL);
+  GstSegment segment;
+  gdouble x, y;
+  guint i;
+
+  write_repeated_pans ();
+  play (h);
+  for (i = 0; i < G_N_ELEMENTS (forward); i++)
+    push_frame_at (h, i, forward[i]);
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.rate = -1;
+  segment.stop = GST_SECOND;
+  gst_harness_push_event (h, gst_event_new_segment (&segment));
+  for (i = 0; i < G_N_ELEMENTS (backward); i++)
+    push_frame_at (h, i, backward[i]);
+  gst_harness_push_event (h, gst_event_new_eos ());
+
+  fail_if (next_motion (h, &x, &y));
+  for (i = 0; i < G_N_ELEMENTS (motions); i++)
+    fail_unless (next_motion (h, &x, &y) && x == motions[i], "%u: %g", i, x);
+  fail_if (next_motion (h, &x, &y));
+  fail_unless (next_motion (h, &x, &y) && x == -7);
+  fail_unless (next_motion (h, &x, &y) && x == -6);
+  fail_unless (next_motion (h, &x, &y) && x == -5);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (lines_without_times_are_taken_one_after_the_other)
 {
   GstHarness *h = harness_new ("in", NULL);
@@ -126,7 +175,18 @@ static const struct
   {MAGIC "0 0 given 1 0 0 1,0 0 0 0 1 0\n", "not of six numbers"},
   {MAGIC "0 0 given 1 0 0 nan 0 0 0 1 0\n", "not of six numbers"},
   {MAGIC "0 0 given 1 0 0 1 0 0 0 -1 0\n", "cannot be inverted, or mirrors"},
-  {MAGIC "40" FRAME "40" FRAME, "not later than the line before"},
+  {MAGIC "40" FRAME "39" FRAME, "line 3 of "},
+  {MAGIC "40" FRAME "39" FRAME, "is earlier than the line before"},
+  {MAGIC "9223372036854775808" FRAME, "line 2 of "},
+  {MAGIC "9223372036854775808" FRAME, "a time of more than 2^63 - 1"},
+  {MAGIC "99999999999999999999" FRAME, "a time of more than 2^63 - 1"},
+  {MAGIC "0 0 given 1e300 0 0 1 0 0 0 1 0\n", "line 2 of "},
+  {MAGIC "0 0 given 1e300 0 0 1 0 0 0 1 0\n", "not between 0 and 1"},
+  {MAGIC "0 0 given -7 0 0 1 0 0 0 1 0\n", "not between 0 and 1"},
+  {MAGIC "0 0 given 1 10 11 1 0 0 0 1 0\n", "more inliers than tracks"},
+  {MAGIC "0 0 given 1 0 0 1e200 0 0 0 1e200 0\n", "determinant is too large"},
+  {MAGIC "0 0 given 1 0 0 1e200 1e200 0 1e200 1e200 0\n",
+      "determinant is too large"},
   {MAGIC "40" FRAME "-" FRAME, "others have none"},
 };
 
@@ -174,7 +234,8 @@ GST_START_TEST (files_that_cannot_be_opened_are_an_error_at_the_start)
 
 GST_END_TEST;
 
-GST_START_TEST (a_rolling_shutter_asked_for_without_analysis_is_a_warning)
+/* Nobody need ask for the rolling shutter: it is on by default. */
+GST_START_TEST (a_rolling_shutter_that_is_not_corrected_is_one_warning)
 {
   gint shutter;
 
@@ -188,9 +249,12 @@ GST_START_TEST (a_rolling_shutter_asked_for_without_analysis_is_a_warning)
     play (h);
     message = stab_harness_message (h, GST_MESSAGE_WARNING);
     fail_unless_equals_int (message != NULL,
-        shutter == L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY);
+        shutter != L1L2STAB_ROLLING_SHUTTER_NONE);
     gst_clear_message (&message);
     push_frame (h, 0);
+    gst_harness_set_src_caps_str (h, NOISE_CAPS ", pixel-aspect-ratio=2/1");
+    push_frame (h, 1);
+    fail_unless (stab_harness_message (h, GST_MESSAGE_WARNING) == NULL);
     stab_harness_free (h);
   }
 }
@@ -203,8 +267,8 @@ GST_START_TEST (frames_of_another_size_or_rate_or_time_are_refused)
   {
     const gchar *text, *words;
   } cases[] = {
-    {MAGIC "size 1920 1080\n0" FRAME, "is of frames of 1920x1080 pixels"},
-    {MAGIC "framerate 30/1\n-" FRAME, "is of 30/1 frames a second"},
+    {MAGIC "size 1920 1080\n0" FRAME, "is for frames of 1920x1080 pixels"},
+    {MAGIC "framerate 30/1\n-" FRAME, "is for 30/1 frames per second"},
     {MAGIC "size 160 120\n90000000" FRAME, "has no line for the frame"},
     {MAGIC "framerate 25/1\n", "has no line for the frame"},
   };
@@ -236,11 +300,12 @@ motionin_suite (void)
   tcase_add_checked_fixture (tc, make_folder, remove_folder);
   tcase_add_test (tc,
       frames_that_are_left_out_or_run_backward_find_their_motion);
+  tcase_add_test (tc, frames_with_one_timestamp_take_its_lines_in_order);
   tcase_add_test (tc, lines_without_times_are_taken_one_after_the_other);
   tcase_add_loop_test (tc, a_faulty_file_stops_the_start_and_the_error_says_where, 0,
       G_N_ELEMENTS (faulty));
   tcase_add_test (tc, files_that_cannot_be_opened_are_an_error_at_the_start);
-  tcase_add_test (tc, a_rolling_shutter_asked_for_without_analysis_is_a_warning);
+  tcase_add_test (tc, a_rolling_shutter_that_is_not_corrected_is_one_warning);
   tcase_add_test (tc, frames_of_another_size_or_rate_or_time_are_refused);
   return s;
 }

@@ -152,6 +152,106 @@ GST_START_TEST (a_segment_goes_downstream_as_it_came)
 
 GST_END_TEST;
 
+static void
+push_segment_with (GstHarness * h, gdouble rate, GstClockTime stop,
+    GstClockTime position)
+{
+  GstSegment segment;
+
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.rate = rate;
+  segment.stop = stop;
+  segment.position = position;
+  fail_unless (gst_harness_push_event (h, gst_event_new_segment (&segment)));
+}
+
+/* As a live source or an adaptive stream does when the end of what it plays becomes known or moves. */
+GST_START_TEST (an_update_of_the_segment_keeps_its_place_and_does_not_drain)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW,
+      "post-messages", TRUE, NULL);
+  GstMessage *message;
+  GString *out;
+  guint i;
+
+  push_segment_with (h, 1, 6 * FRAME_DURATION, 0);
+  out = stab_record_new (h);
+  stab_push_frames (h, 0, 6);
+  push_segment_with (h, 1, 40 * FRAME_DURATION, 6 * FRAME_DURATION);
+  fail_unless_equals_string (out->str, "");
+  stab_push_frames (h, 6, WINDOW + 1);
+  fail_unless_equals_string (out->str, "f0 f1 f2 f3 f4 f5 segment f6 f7 ");
+  fail_unless_equals_uint64 (stab_position (h), 8 * FRAME_DURATION);
+
+  /* One path; every frame has the stream time of its own segment. */
+  for (i = 0; i < 8; i++) {
+    const GstStructure *frame;
+    gboolean starts;
+    guint64 time;
+
+    message = stab_harness_message (h, GST_MESSAGE_ELEMENT);
+    fail_unless (message != NULL);
+    frame = gst_message_get_structure (message);
+    fail_unless (gst_structure_get (frame, "path-start", G_TYPE_BOOLEAN,
+            &starts, "stream-time", G_TYPE_UINT64, &time, NULL));
+    fail_unless_equals_int (starts, i == 0);
+    fail_unless_equals_uint64 (time, i * FRAME_DURATION);
+    gst_message_unref (message);
+  }
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (an_update_of_the_segment_with_no_frame_held_passes_at_once)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  GString *out;
+
+  push_segment_with (h, 1, 6 * FRAME_DURATION, 0);
+  out = stab_record_new (h);
+  push_segment_with (h, 1, 40 * FRAME_DURATION, 0);
+  fail_unless_equals_string (out->str, "segment ");
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+/* Running time counts back from the stop, so a new one moves the frames. */
+GST_START_TEST (in_reverse_a_segment_with_a_new_stop_is_no_update)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  GString *out;
+
+  push_segment_with (h, -1, 40 * FRAME_DURATION, 40 * FRAME_DURATION);
+  out = stab_record_new (h);
+  stab_push_frames (h, 20, 1);
+  push_segment_with (h, -1, 30 * FRAME_DURATION, 19 * FRAME_DURATION);
+  fail_unless_equals_string (out->str, "f20 segment ");
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+GST_START_TEST (a_flush_drops_an_update_of_the_segment_that_waits)
+{
+  GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
+  GString *out;
+
+  push_segment_with (h, 1, 6 * FRAME_DURATION, 0);
+  out = stab_record_new (h);
+  stab_push_frames (h, 0, 3);
+  push_segment_with (h, 1, 40 * FRAME_DURATION, 0);
+  gst_harness_push_event (h, gst_event_new_flush_start ());
+  gst_harness_push_event (h, gst_event_new_flush_stop (TRUE));
+  push_segment_with (h, 1, 50 * FRAME_DURATION, 0);
+  stab_push_frames (h, 0, WINDOW);
+  fail_unless_equals_string (out->str, "flush-start flush-stop segment f0 ");
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 static Suite *
 segments_suite (void)
 {
@@ -165,6 +265,12 @@ segments_suite (void)
   tcase_add_test (tc, in_reverse_the_marks_of_a_decoder_end_no_window);
   tcase_add_test (tc, key_frames_alone_leave_at_once);
   tcase_add_test (tc, a_segment_goes_downstream_as_it_came);
+  tcase_add_test (tc,
+      an_update_of_the_segment_keeps_its_place_and_does_not_drain);
+  tcase_add_test (tc,
+      an_update_of_the_segment_with_no_frame_held_passes_at_once);
+  tcase_add_test (tc, in_reverse_a_segment_with_a_new_stop_is_no_update);
+  tcase_add_test (tc, a_flush_drops_an_update_of_the_segment_that_waits);
   return s;
 }
 

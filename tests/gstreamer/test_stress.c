@@ -8,12 +8,16 @@
 #define N_ROUNDS 1000
 #define PATIENCE (20 * GST_SECOND)
 
-/* The frames that are inside, by their timestamps. Both pads' probes run under the same stream lock. */
+/* A segment among the frames. */
+#define SEGMENT_MARK GST_CLOCK_TIME_NONE
+
+/* The frames that are inside, by their timestamps, and the segments between them. The probes of both pads run under the
+ * same stream lock. */
 typedef struct
 {
   GQueue inside;
   guint n_out;
-  gchar *fault;                 /* the first; told by the test's own thread */
+  gchar *fault;                 /* the first; the test's own thread reports it */
 } Monitor;
 
 static void
@@ -29,11 +33,42 @@ static GstPadProbeReturn
 goes_in (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
 {
   Monitor *monitor = user_data;
-  GstBuffer *buffer = GST_PAD_PROBE_INFO_BUFFER (info);
+  GstClockTime mark = SEGMENT_MARK;
 
-  g_queue_push_tail (&monitor->inside, g_memdup2 (&GST_BUFFER_PTS (buffer),
-          sizeof (GstClockTime)));
+  if (GST_PAD_PROBE_INFO_TYPE (info) & GST_PAD_PROBE_TYPE_BUFFER)
+    mark = GST_BUFFER_PTS (GST_PAD_PROBE_INFO_BUFFER (info));
+  else if (GST_EVENT_TYPE (GST_PAD_PROBE_INFO_EVENT (info))
+      != GST_EVENT_SEGMENT)
+    return GST_PAD_PROBE_OK;
+  g_queue_push_tail (&monitor->inside, g_memdup2 (&mark, sizeof (mark)));
   return GST_PAD_PROBE_OK;
+}
+
+/* A pad that could not push caps while it was flushing pushes them before the next segment, so segments do not count. */
+static gboolean
+has_frames (const Monitor * monitor)
+{
+  const GList *link;
+
+  for (link = monitor->inside.head; link; link = link->next) {
+    if (*(const GstClockTime *) link->data != SEGMENT_MARK)
+      return TRUE;
+  }
+  return FALSE;
+}
+
+/* What comes out must be the oldest that is inside. */
+static void
+take_oldest (Monitor * monitor, GstClockTime mark)
+{
+  GstClockTime *oldest = g_queue_pop_head (&monitor->inside);
+
+  if (!monitor->fault && !(oldest && *oldest == mark))
+    monitor->fault = g_strdup_printf ("%" GST_TIME_FORMAT " came out, not %"
+        GST_TIME_FORMAT "; %u more are inside", GST_TIME_ARGS (mark),
+        GST_TIME_ARGS (oldest ? *oldest : 0),
+        g_queue_get_length (&monitor->inside));
+  g_free (oldest);
 }
 
 static GstPadProbeReturn
@@ -42,14 +77,7 @@ comes_out (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
   Monitor *monitor = user_data;
 
   if (GST_PAD_PROBE_INFO_TYPE (info) & GST_PAD_PROBE_TYPE_BUFFER) {
-    GstBuffer *buffer = GST_PAD_PROBE_INFO_BUFFER (info);
-    GstClockTime *pts = g_queue_pop_head (&monitor->inside);
-
-    if (!monitor->fault && !(pts && *pts == GST_BUFFER_PTS (buffer)))
-      monitor->fault = g_strdup_printf ("%" GST_TIME_FORMAT " came out, not %"
-          GST_TIME_FORMAT, GST_TIME_ARGS (GST_BUFFER_PTS (buffer)),
-          GST_TIME_ARGS (pts ? *pts : GST_CLOCK_TIME_NONE));
-    g_free (pts);
+    take_oldest (monitor, GST_BUFFER_PTS (GST_PAD_PROBE_INFO_BUFFER (info)));
     monitor->n_out++;
     return GST_PAD_PROBE_OK;
   }
@@ -57,15 +85,16 @@ comes_out (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
     case GST_EVENT_FLUSH_STOP:
       forget (monitor);
       break;
+    case GST_EVENT_SEGMENT:
+      take_oldest (monitor, SEGMENT_MARK);
+      break;
     case GST_EVENT_STREAM_START:
     case GST_EVENT_CAPS:
-    case GST_EVENT_SEGMENT:
     case GST_EVENT_SEGMENT_DONE:
     case GST_EVENT_EOS:
-      if (!monitor->fault && !g_queue_is_empty (&monitor->inside))
-        monitor->fault = g_strdup_printf ("%s overtakes %u frames",
-            GST_EVENT_TYPE_NAME (GST_PAD_PROBE_INFO_EVENT (info)),
-            g_queue_get_length (&monitor->inside));
+      if (!monitor->fault && has_frames (monitor))
+        monitor->fault = g_strdup_printf ("%s overtakes a frame",
+            GST_EVENT_TYPE_NAME (GST_PAD_PROBE_INFO_EVENT (info)));
       break;
     default:
       break;
@@ -83,7 +112,8 @@ monitor_element (Monitor * monitor, GstElement * element)
   g_queue_init (&monitor->inside);
   monitor->n_out = 0;
   monitor->fault = NULL;
-  gst_pad_add_probe (sink, GST_PAD_PROBE_TYPE_BUFFER, goes_in, monitor, NULL);
+  gst_pad_add_probe (sink, GST_PAD_PROBE_TYPE_BUFFER |
+      GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, goes_in, monitor, NULL);
   /* The peer's pad: while that one is stopped already, nothing comes out. */
   gst_pad_add_probe (peer, GST_PAD_PROBE_TYPE_BUFFER |
       GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM | GST_PAD_PROBE_TYPE_EVENT_FLUSH,
@@ -150,6 +180,7 @@ push_some (Play * play)
   }
 }
 
+/* Often an update of the segment before it. */
 static void
 push_segment (Play * play)
 {

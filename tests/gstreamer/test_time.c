@@ -250,6 +250,27 @@ GST_START_TEST (a_flush_leaves_the_clock_nothing_to_let_go)
 
 GST_END_TEST;
 
+/* The frame before had set the timer for the old latency. */
+GST_START_TEST (after_the_latency_shrinks_a_frame_leaves_by_the_new_one)
+{
+  const GstClockTime duration = 10 * GST_MSECOND;
+  GstHarness *h = live_harness_new ();
+
+  push_live (h, 0);
+  fail_unless (gst_harness_wait_for_clock_id_waits (h, 1, 10));
+  gst_harness_set_src_caps_str (h, "video/x-raw, format=I420, width=64, "
+      "height=48, framerate=100/1");
+  pull_in_time (h, 0);
+  push_live (h, FRAME_DURATION);
+  fail_unless (gst_harness_crank_single_clock_wait (h));
+  pull_in_time (h, FRAME_DURATION);
+  fail_unless_equals_uint64 (clock_time (h),
+      FRAME_DURATION + WINDOW * duration - duration / 2);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 static GstPadProbeReturn
 end_once (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
 {
@@ -319,6 +340,7 @@ time_suite (void)
   tcase_add_test (tc, what_waits_for_a_frame_leaves_with_it);
   tcase_add_test (tc, in_a_pause_no_time_goes_by);
   tcase_add_test (tc, a_flush_leaves_the_clock_nothing_to_let_go);
+  tcase_add_test (tc, after_the_latency_shrinks_a_frame_leaves_by_the_new_one);
   tcase_add_test (tc,
       what_the_clock_met_downstream_goes_upstream_with_the_next_frame);
   tcase_add_test (tc, stopping_ends_the_wait);

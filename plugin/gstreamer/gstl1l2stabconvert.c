@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "gstl1l2stabglue.h"
+#include "gstl1l2stabconvert.h"
 
 #include "gstl1l2stabcaps.h"
 
 #define GST_CAT_DEFAULT gst_l1l2_stab_debug
 
-/* The library's upper bound; the frame rate only scales lambda, so a faster camera may as well be taken for this. */
+/* The highest frame rate that the library accepts. The rate only scales lambda, so a faster camera is treated as one of
+ * this rate. */
 #define MAX_FRAME_RATE 1000.0
 
 static const struct
@@ -26,7 +27,7 @@ write_message (void *cookie, L1L2StabLogLevel level, const char *message)
   GstL1L2StabLog *log = cookie;
   guint i;
 
-  /* What comes after the first is about its consequences. */
+  /* The first error is the cause; the later ones are its consequences. */
   if (level == L1L2STAB_LOG_ERROR && !log->reason)
     log->reason = g_strdup (message);
   for (i = 0; i < G_N_ELEMENTS (levels); i++) {
@@ -37,7 +38,7 @@ write_message (void *cookie, L1L2StabLogLevel level, const char *message)
 }
 
 void
-gst_l1l2_stab_glue_logger (L1L2StabLogger * logger, GstL1L2StabLog * log)
+gst_l1l2_stab_convert_logger (L1L2StabLogger * logger, GstL1L2StabLog * log)
 {
   GstDebugLevel threshold = gst_debug_category_get_threshold (GST_CAT_DEFAULT);
   guint i;
@@ -45,7 +46,7 @@ gst_l1l2_stab_glue_logger (L1L2StabLogger * logger, GstL1L2StabLog * log)
   g_clear_pointer (&log->reason, g_free);
   logger->write = write_message;
   logger->cookie = log;
-  logger->max_level = L1L2STAB_LOG_ERROR;       /* for the reason, always */
+  logger->max_level = L1L2STAB_LOG_ERROR;       /* at least, so that the reason is known */
   for (i = 0; i < G_N_ELEMENTS (levels); i++) {
     if (levels[i].gst <= threshold)
       logger->max_level = levels[i].ours;
@@ -53,7 +54,7 @@ gst_l1l2_stab_glue_logger (L1L2StabLogger * logger, GstL1L2StabLog * log)
 }
 
 gboolean
-gst_l1l2_stab_glue_parse_caps (GstVideoInfo * info, const GstCaps * caps)
+gst_l1l2_stab_convert_caps (GstVideoInfo * info, const GstCaps * caps)
 {
   const gchar *site;
 
@@ -79,7 +80,7 @@ chroma_site_from_video (GstVideoChromaSite site)
 }
 
 void
-gst_l1l2_stab_glue_config (L1L2StabConfig * config, const GstVideoInfo * info)
+gst_l1l2_stab_convert_config (L1L2StabConfig * config, const GstVideoInfo * info)
 {
   config->format = gst_l1l2_stab_caps_format (GST_VIDEO_INFO_FORMAT (info));
   config->width = GST_VIDEO_INFO_WIDTH (info);
@@ -97,16 +98,30 @@ gst_l1l2_stab_glue_config (L1L2StabConfig * config, const GstVideoInfo * info)
 }
 
 GstClockTime
-gst_l1l2_stab_glue_stream_time (const GstSegment * segment, GstBuffer * frame)
+gst_l1l2_stab_convert_stream_time (const GstSegment * segment,
+    GstClockTime timestamp)
 {
   if (segment->format != GST_FORMAT_TIME)
     return GST_CLOCK_TIME_NONE;
-  return gst_segment_to_stream_time (segment, GST_FORMAT_TIME,
-      GST_BUFFER_PTS (frame));
+  return gst_segment_to_stream_time (segment, GST_FORMAT_TIME, timestamp);
+}
+
+GstClockTime
+gst_l1l2_stab_convert_add_times (GstClockTime a, GstClockTime b)
+{
+  const GstClockTime largest = GST_CLOCK_TIME_NONE - 1;
+
+  return a <= largest - b ? a + b : largest;
+}
+
+GstClockTime
+gst_l1l2_stab_convert_time_distance (GstClockTime a, GstClockTime b)
+{
+  return a > b ? a - b : b - a;
 }
 
 void
-gst_l1l2_stab_glue_planes (L1L2StabFrame * frame, const GstVideoFrame * video)
+gst_l1l2_stab_convert_planes (L1L2StabFrame * frame, const GstVideoFrame * video)
 {
   guint i;
 
@@ -117,7 +132,7 @@ gst_l1l2_stab_glue_planes (L1L2StabFrame * frame, const GstVideoFrame * video)
 }
 
 GstFlowReturn
-gst_l1l2_stab_glue_flow (GstElement * element, L1L2StabResult result,
+gst_l1l2_stab_convert_result (GstElement * element, L1L2StabResult result,
     const GstL1L2StabLog * log)
 {
   const gchar *what = l1l2stab_strerror (result);

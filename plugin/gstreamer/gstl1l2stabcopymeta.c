@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "gstl1l2stabcarry.h"
+#include "gstl1l2stabcopymeta.h"
 
 /* Without a tag, a meta is about the frame as a whole; colours are not touched. */
 static gboolean
@@ -15,7 +15,7 @@ is_about_the_whole (const gchar * const *tags)
 
 /* What tells of borders stays, nearly, true: they move as little as the picture does. */
 gboolean
-gst_l1l2_stab_carry_keeps (const GstMeta * meta)
+gst_l1l2_stab_copy_meta_keeps (const GstMeta * meta)
 {
   const GType api = meta->info->api;
 
@@ -59,7 +59,7 @@ move_region (GstBuffer * output, GstMeta ** meta, gpointer user_data)
 }
 
 void
-gst_l1l2_stab_carry_regions (GstBuffer * output, const GstL1L2StabMap * map,
+gst_l1l2_stab_copy_meta_map_regions (GstBuffer * output, const GstL1L2StabMap * map,
     const GstVideoInfo * out_info)
 {
   Picture picture = { map, out_info };

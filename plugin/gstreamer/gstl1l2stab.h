@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The element "l1l2stab": a GstBaseTransform that holds a window of frames back. */
+/* The element "l1l2stab": a GstBaseTransform that delays the video by a window of frames. */
 #ifndef GST_L1L2_STAB_H
 #define GST_L1L2_STAB_H
 

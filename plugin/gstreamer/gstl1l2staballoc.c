@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "gstl1l2staballoc.h"
 
-/* What upstream works with while the window is held: one being filled, one on its way, two to spare. */
+/* Buffers that upstream needs while a window is held: one that it fills, one on its way, two in reserve. */
 #define SPARE_BUFFERS 4
 
-/* Neither least nor most: a pool without a limit grows as the window fills, and from one with a limit frames are
- * copied. To ask for a window of buffers would make upstream allocate them at once, beside those of a decoder that
- * renders into memory of its own: measured with avdec_h264, twice the window. */
+/* The pool has no minimum and no maximum: it grows while the window fills. With a minimum of a window of buffers,
+ * upstream would allocate them at once, even a decoder that renders into memory of its own. Measured with avdec_h264,
+ * that took twice the memory of the window. */
 void
 gst_l1l2_stab_alloc_propose (GstQuery * query)
 {
@@ -57,7 +57,7 @@ gst_l1l2_stab_alloc_decide (GstQuery * query)
     pool = gst_video_buffer_pool_new ();
   size = MAX (size, GST_VIDEO_INFO_SIZE (&info));
 
-  /* A pool that pads its frames says so in the meta. */
+  /* The meta describes the padding of a pool's frames. */
   config = gst_buffer_pool_get_config (pool);
   gst_buffer_pool_config_set_params (config, caps, size, least, most);
   if (gst_buffer_pool_has_option (pool, GST_BUFFER_POOL_OPTION_VIDEO_META))
@@ -89,8 +89,8 @@ gst_l1l2_stab_alloc_is_scarce (GstBuffer * buffer, guint window)
   GstParentBufferMeta *parent;
   guint i;
 
-  /* Memory of a device (DMABuf, a camera's) must go back soon; what may not be written is somebody's who lends it
-   * (shmsrc: of an area that all its frames share). */
+  /* Memory of a device, such as DMABuf or a camera's, must go back soon. Read-only memory is lent: shmsrc lends parts
+   * of one area that all of its frames share. */
   for (i = 0; i < gst_buffer_n_memory (buffer); i++) {
     GstMemory *memory = gst_buffer_peek_memory (buffer, i);
 
@@ -98,7 +98,7 @@ gst_l1l2_stab_alloc_is_scarce (GstBuffer * buffer, guint window)
         || GST_MEMORY_IS_READONLY (memory))
       return TRUE;
   }
-  /* A buffer that was copied or cut out of another keeps that one from its pool. */
+  /* A buffer that is part of another one keeps the other one out of its pool. */
   while (!buffer->pool
       && (parent = gst_buffer_get_parent_buffer_meta (buffer)) != NULL)
     buffer = parent->buffer;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Where buffers come from, when a window of them is held back. Upstream is offered a pool without a limit; whoever has
- * one with a limit keeps its own and is copied. */
+/* Allocation: which pools are offered and used, and when a frame is copied because upstream cannot spare a window of
+ * buffers. */
 #ifndef GST_L1L2_STAB_ALLOC_H
 #define GST_L1L2_STAB_ALLOC_H
 
@@ -9,19 +9,20 @@
 
 G_BEGIN_DECLS
 
-/* Answers upstream's query: a pool that grows as it is needed, and GstVideoMeta. */
+/* Answers an allocation query of upstream: offers a pool without a limit, and GstVideoMeta. */
 void gst_l1l2_stab_alloc_propose (GstQuery * query);
 
-/* Completes downstream's answer, so that there is a pool in any case. */
+/* Completes the answer of downstream, so that there always is a pool for the output. */
 void gst_l1l2_stab_alloc_decide (GstQuery * query);
 
-/* Would holding `window` of its like starve upstream, or is it memory of a kind that is not to be held? */
+/* True if the frame must be copied: upstream would run out of buffers if `window` of them were held, or the memory is
+ * of a kind that must go back soon. */
 gboolean gst_l1l2_stab_alloc_is_scarce (GstBuffer * buffer, guint window);
 
-/* An active pool of frames of our own; NULL when that fails. */
+/* A new, active pool for copies; NULL if that fails. */
 GstBufferPool *gst_l1l2_stab_alloc_own_pool (const GstVideoInfo * info);
 
-/* A copy from `own_pool`, the pixels alone; NULL when that fails. */
+/* A copy of the pixels, without metadata, from `own_pool`; NULL if that fails. */
 GstBuffer *gst_l1l2_stab_alloc_copy (GstBufferPool * own_pool,
     GstBuffer * buffer, const GstVideoInfo * info);
 

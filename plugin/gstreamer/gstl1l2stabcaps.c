@@ -14,15 +14,15 @@
     ", width = " SIDE_RANGE (least) ", height = " SIDE_RANGE (least) \
     ", framerate = " GST_VIDEO_FPS_RANGE
 
-/* Caps that lack these two fields are progressive and mono, and intersect. */
+/* Caps without interlace-mode and multiview-mode are progressive and mono. They intersect with these. */
 static GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE ("sink",
     GST_PAD_SINK, GST_PAD_ALWAYS,
     GST_STATIC_CAPS (RAW_VIDEO (GST_L1L2_STAB_MIN_SIZE)
         ", interlace-mode = (string) progressive"
         ", multiview-mode = (string) mono"));
 
-/* A crop may be smaller than the least input. The two fields are not here, so as not to be added to caps that came
- * without. */
+/* The output can be smaller than the smallest input. The two fields are left out, so that they are not added to caps
+ * that came without them. */
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE ("src",
     GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS (RAW_VIDEO (1)));
 
@@ -41,7 +41,8 @@ set_size_range (GstStructure * structure, gint least)
       "height", GST_TYPE_INT_RANGE, least, GST_L1L2_STAB_MAX_SIZE, NULL);
 }
 
-/* Only the output of a known input has a known size: several inputs are rounded to the same output. */
+/* The size of the output follows from that of the input, but not the other way round: several input sizes are rounded
+ * to the same output size. */
 static void
 transform_size (GstStructure * structure, const L1L2StabConfig * settings,
     GstPadDirection direction)
@@ -53,7 +54,7 @@ transform_size (GstStructure * structure, const L1L2StabConfig * settings,
     set_size_range (structure, GST_L1L2_STAB_MIN_SIZE);
     return;
   }
-  config.format = L1L2STAB_FORMAT_GRAY8;        /* any will do: the size is the same */
+  config.format = L1L2STAB_FORMAT_GRAY8;        /* the size does not depend on it */
   if (gst_structure_get_int (structure, "width", &config.width)
       && gst_structure_get_int (structure, "height", &config.height)
       && l1l2stab_config_output_size (&config, &width, &height) == L1L2STAB_OK)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What goes in and what comes out: the pad templates, and the caps of one side seen from the other. */
+/* Negotiation: the pad templates, and the caps of one pad that follow from those of the other. */
 #ifndef GST_L1L2_STAB_CAPS_H
 #define GST_L1L2_STAB_CAPS_H
 
@@ -9,17 +9,17 @@
 
 G_BEGIN_DECLS
 
-/* Pixels, either side, of the input. */
+/* Smallest and largest width and height of the input, pixels. */
 #define GST_L1L2_STAB_MIN_SIZE 16
 #define GST_L1L2_STAB_MAX_SIZE 16384
 
 void gst_l1l2_stab_caps_add_templates (GstElementClass * klass);
 
-/* The caps on the other side of `caps`, which are those of the pad in `direction`; `filter` may be NULL. */
+/* The caps of the other pad, if `caps` are those of the pad of this direction. `filter` may be NULL. */
 GstCaps *gst_l1l2_stab_caps_transform (const L1L2StabConfig * settings,
     GstPadDirection direction, GstCaps * caps, GstCaps * filter);
 
-/* UNKNOWN for a format that is not taken. */
+/* The library's name of a format; L1L2STAB_FORMAT_UNKNOWN if it is not accepted. */
 L1L2StabFormat gst_l1l2_stab_caps_format (GstVideoFormat format);
 
 G_END_DECLS

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "gstl1l2stabcopymeta.h"
 
-/* Without a tag, a meta is about the frame as a whole; colours are not touched. */
+/* A meta without a tag describes the frame as a whole. One about colors stays true, because colors are not changed. */
 static gboolean
 is_about_the_whole (const gchar * const *tags)
 {
@@ -13,7 +13,7 @@ is_about_the_whole (const gchar * const *tags)
   return TRUE;
 }
 
-/* What tells of borders stays, nearly, true: they move as little as the picture does. */
+/* AFD and bars describe black borders. They stay nearly true, because stabilization moves the picture only a little. */
 gboolean
 gst_l1l2_stab_copy_meta_keeps (const GstMeta * meta)
 {

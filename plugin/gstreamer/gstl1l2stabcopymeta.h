@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Which of a frame's metas go with it into the output. What is bound to a place in the picture moves with it. */
+/* Which metas of an input frame are copied to its output frame, and how regions of interest follow the picture. */
 #ifndef GST_L1L2_STAB_COPY_META_H
 #define GST_L1L2_STAB_COPY_META_H
 
@@ -10,11 +10,11 @@
 
 G_BEGIN_DECLS
 
-/* Is this meta to be copied? */
+/* True if this meta is copied. */
 gboolean gst_l1l2_stab_copy_meta_keeps (const GstMeta * meta);
 
-/* Regions of interest, copied from the source, become the boxes around what they enclosed; those that are out of the
- * picture go. */
+/* Maps the regions of interest that were copied from the source frame to the output frame. Regions that are outside the
+ * picture are removed. */
 void gst_l1l2_stab_copy_meta_map_regions (GstBuffer * output,
     const GstL1L2StabMap * map, const GstVideoInfo * out_info);
 

@@ -9,7 +9,7 @@ gst_l1l2_stab_join_get_type (void)
   static gsize type = 0;
   static const GEnumValue values[] = {
     {L1L2STAB_JOIN_CONTINUOUS,
-          "The next window goes on from the frames already given out",
+          "The next window continues the path that was already emitted",
         "continuous"},
     {L1L2STAB_JOIN_BLEND,
         "The paths of two windows are averaged where they overlap", "blend"},
@@ -27,9 +27,9 @@ gst_l1l2_stab_interpolation_get_type (void)
 {
   static gsize type = 0;
   static const GEnumValue values[] = {
-    {L1L2STAB_INTERPOLATION_BILINEAR, "2x2 pixels: fast and soft", "bilinear"},
-    {L1L2STAB_INTERPOLATION_BICUBIC, "4x4 pixels", "bicubic"},
-    {L1L2STAB_INTERPOLATION_LANCZOS, "6x6 pixels: sharp and slow", "lanczos"},
+    {L1L2STAB_INTERPOLATION_BILINEAR, "Over 2x2 pixels: fastest, softest", "bilinear"},
+    {L1L2STAB_INTERPOLATION_BICUBIC, "Over 4x4 pixels", "bicubic"},
+    {L1L2STAB_INTERPOLATION_LANCZOS, "Over 6x6 pixels: sharpest, slowest", "lanczos"},
     {0, NULL, NULL}
   };
 
@@ -45,9 +45,9 @@ gst_l1l2_stab_output_size_get_type (void)
   static gsize type = 0;
   static const GEnumValue values[] = {
     {L1L2STAB_OUTPUT_SIZE_INPUT,
-        "As the input: the crop window is zoomed to fill it", "input"},
+        "The size of the input: the crop window is enlarged to fill it", "input"},
     {L1L2STAB_OUTPUT_SIZE_CROP,
-        "The crop window's own size, in even numbers: no zoom", "crop"},
+        "The size of the crop window, rounded to even numbers", "crop"},
     {0, NULL, NULL}
   };
 
@@ -62,11 +62,11 @@ gst_l1l2_stab_motion_model_get_type (void)
 {
   static gsize type = 0;
   static const GEnumValue values[] = {
-    {L1L2STAB_MOTION_MODEL_TRANSLATION, "The camera moves the picture",
+    {L1L2STAB_MOTION_MODEL_TRANSLATION, "The picture moves",
         "translation"},
-    {L1L2STAB_MOTION_MODEL_SIMILARITY, "It moves, turns and zooms it",
+    {L1L2STAB_MOTION_MODEL_SIMILARITY, "The picture moves, rotates and changes its scale",
         "similarity"},
-    {L1L2STAB_MOTION_MODEL_AFFINE, "It also shears it", "affine"},
+    {L1L2STAB_MOTION_MODEL_AFFINE, "As similarity, and the picture is sheared", "affine"},
     {0, NULL, NULL}
   };
 
@@ -81,12 +81,12 @@ gst_l1l2_stab_rolling_shutter_get_type (void)
 {
   static gsize type = 0;
   static const GEnumValue values[] = {
-    {L1L2STAB_ROLLING_SHUTTER_NONE, "Nothing is done about it", "none"},
+    {L1L2STAB_ROLLING_SHUTTER_NONE, "No correction", "none"},
     {L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY,
-        "One homography for each frame: the wobble between frames",
+        "One homography per frame: corrects wobble between frames",
         "homography"},
     {L1L2STAB_ROLLING_SHUTTER_MIXTURE,
-        "A homography for each row: the skew within a frame, too", "mixture"},
+        "One homography per row: also corrects skew within a frame", "mixture"},
     {0, NULL, NULL}
   };
 

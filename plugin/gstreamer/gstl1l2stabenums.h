@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The library's enumerations, as far as properties have them, with the names that a user types. */
+/* GLib types for the enumerations of the library that properties use, with the names that a user types. */
 #ifndef GST_L1L2_STAB_ENUMS_H
 #define GST_L1L2_STAB_ENUMS_H
 

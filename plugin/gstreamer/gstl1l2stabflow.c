@@ -69,8 +69,8 @@ gst_l1l2_stab_flow_take_frame (GstL1L2StabFlow * flow, GstBuffer * frame)
   return release_overdue (flow, GST_CLOCK_TIME_NONE, pts);
 }
 
-/* Makes the frames ready that have been held for the latency, at the running time `now` or because the input has come to
- * the timestamp `position`. Either may be NONE. */
+/* Makes the frames ready that have been held for the latency, at the running time `now` or because the input has come
+ * to the timestamp `position`. Either may be NONE. */
 static GstFlowReturn
 release_overdue (GstL1L2StabFlow * flow, GstClockTime now,
     GstClockTime position)
@@ -185,8 +185,8 @@ set_position (GstL1L2StabFlow * flow, GstClockTime position)
   GST_OBJECT_UNLOCK (flow->trans);
 }
 
-/* A new segment ends the path, because its frames can be anywhere in the stream. An update of the same segment waits for
- * the frames that came in before it. */
+/* A new segment ends the path, because its frames can be anywhere in the stream. An update of the same segment waits
+ * for the frames that came in before it. */
 static gboolean
 take_segment (GstL1L2StabFlow * flow, GstEvent * event)
 {
@@ -250,8 +250,8 @@ flush (GstL1L2StabFlow * flow)
 gboolean
 gst_l1l2_stab_flow_take_event (GstL1L2StabFlow * flow, GstEvent * event)
 {
-  /* FLUSH_START and out-of-band events come from other threads, without the stream lock, while the streaming thread works
-   * on the stream. Nothing of it may be read here. */
+  /* FLUSH_START and out-of-band events come from other threads, without the stream lock, while the streaming thread
+   * works on the stream. Nothing of it may be read here. */
   if (!GST_EVENT_IS_SERIALIZED (event))
     return FALSE;
 
@@ -323,8 +323,8 @@ arrival_time (GstL1L2StabFlow * flow)
   return gst_l1l2_stab_timer_now (&flow->timer);
 }
 
-/* The running time at which the oldest frame has to leave. While a push blocked, no frame could come in; upstream gets a
- * moment to deliver, as long as the sink still gets its frame in time. */
+/* The running time at which the oldest frame has to leave. While a push blocked, no frame could come in; upstream
+ * gets a moment to deliver, as long as the sink still gets its frame in time. */
 static GstClockTime
 due_time (GstL1L2StabFlow * flow)
 {

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* The pixel formats that are taken, by GStreamer's name and the library's, the preferred ones first. */
+/* The pixel formats that the element accepts, by their names in GStreamer and in the library, preferred ones first. */
 #ifndef GST_L1L2_STAB_FORMATS_H
 #define GST_L1L2_STAB_FORMATS_H
 
 #include <glib.h>
 
-/* The library reads components of two bytes in the processor's own order. */
+/* The library reads 16-bit components in the byte order of the processor. */
 #if G_BYTE_ORDER == G_LITTLE_ENDIAN
 #define GST_L1L2_STAB_DEEP(...) __VA_ARGS__
 #else
 #define GST_L1L2_STAB_DEEP(...)
 #endif
 
-/* FIRST (gst, ours) for the first, NEXT (gst, ours) for all others. */
+/* Expands to FIRST (gst, ours) for the first format and to NEXT (gst, ours) for each of the others. */
 #define GST_L1L2_STAB_FORMATS(FIRST, NEXT) \
   FIRST (I420, I420) NEXT (NV12, NV12) NEXT (YV12, YV12) NEXT (NV21, NV21) \
   GST_L1L2_STAB_DEEP ( \

@@ -37,7 +37,7 @@ copy_field (GQuark field, const GValue * value, gpointer structure)
   return TRUE;
 }
 
-/* A picture that has been scaled shows the same points of the source at other places. */
+/* Adjusts the maps to a picture that was scaled. */
 static void
 scale (GstStructure * structure, const GstVideoMetaTransform * sizes)
 {
@@ -81,7 +81,8 @@ transform (GstBuffer * output, GstCustomMeta * meta, GstBuffer * input,
   return TRUE;
 }
 
-/* The tags let an element that scales ask transform(), and keep one that crops, turns or mirrors from copying. */
+/* Because of the tags, an element that scales calls transform(), and one that crops, rotates or mirrors drops the
+ * meta. */
 void
 gst_l1l2_stab_meta_register (void)
 {

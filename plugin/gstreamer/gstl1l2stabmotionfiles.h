@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Motion files: text files with the camera motion of each frame, which one run writes and another reads. The format is in
- * docs/motion-file.md. */
+/* Motion files: text files with the camera motion of each frame, which one run writes and another reads. The format
+ * is in docs/motion-file.md. */
 #ifndef GST_L1L2_STAB_MOTION_FILES_H
 #define GST_L1L2_STAB_MOTION_FILES_H
 
@@ -83,13 +83,13 @@ GstL1L2StabMotionWriter *gst_l1l2_stab_motion_writer_open (GstElement * element,
 /* FALSE: the file is not complete, and an error was posted. */
 gboolean gst_l1l2_stab_motion_writer_close (GstL1L2StabMotionWriter * out);
 
-/* Tells the writer which frames come next. A file holds frames of one size: if the size changes, a warning is posted and
- * nothing more is written. */
+/* Tells the writer which frames come next. A file holds frames of one size: if the size changes, a warning is posted
+ * and nothing more is written. */
 void gst_l1l2_stab_motion_writer_begin (GstL1L2StabMotionWriter * out,
     const GstVideoInfo * info);
 
-/* Writes the frame that goes out at this stream time. A frame that is earlier than the last line, because the stream has
- * gone back, is not written again. FALSE: an error was posted. */
+/* Writes the frame that goes out at this stream time. A frame that is earlier than the last line, because the stream
+ * has gone back, is not written again. FALSE: an error was posted. */
 gboolean gst_l1l2_stab_motion_writer_write (GstL1L2StabMotionWriter * out,
     GstClockTime stream_time, const L1L2StabInfo * info);
 

@@ -137,9 +137,9 @@ append_frame (GString * text, GstClockTime time, const L1L2StabInfo * info)
   g_string_append_c (text, '\n');
 }
 
-/* False for a frame that is already in the file because the stream has gone back (a loop, reverse playback). Frames that
- * follow each other with one timestamp are different frames. In a file with times a frame without a usable one cannot be
- * found again, and the other way round. */
+/* False for a frame that is already in the file because the stream has gone back (a loop, reverse playback). Frames
+ * that follow each other with one timestamp are different frames. In a file with times a frame without a usable one
+ * cannot be found again, and the other way round. */
 static gboolean
 belongs_in_file (const GstL1L2StabMotionWriter * writer, GstClockTime time)
 {

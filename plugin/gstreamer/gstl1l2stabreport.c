@@ -47,7 +47,7 @@ gst_l1l2_stab_report_dropped (GstL1L2StabReport * report, guint64 n)
   GST_OBJECT_UNLOCK (report->element);
 }
 
-/* A path that starts although frames went before it: a cut. */
+/* A frame that starts a path, although frames were before it, is a cut. */
 static void
 count (GstL1L2StabReport * report, const L1L2StabInfo * info)
 {
@@ -208,7 +208,7 @@ gst_l1l2_stab_report_point_at_source (GstL1L2StabReport * report,
   has_map = report->has_map;
   GST_OBJECT_UNLOCK (report->element);
 
-  /* gst_navigation_event_get_coordinates() of 1.22 does not know the wheel. */
+  /* gst_navigation_event_get_coordinates() of GStreamer 1.22 does not handle the wheel, so the fields are read here. */
   if (has_map && structure
       && gst_structure_get (structure, "pointer_x", G_TYPE_DOUBLE, &x,
           "pointer_y", G_TYPE_DOUBLE, &y, NULL)

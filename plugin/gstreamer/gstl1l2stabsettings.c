@@ -23,15 +23,15 @@ enum
   PROP_POST_MESSAGES,
 };
 
-/* A change while the stream runs waits for the next caps, or, of a file, for the next start: hence READY. */
+/* A change takes effect with the next caps, or for a file with the next start: hence READY. */
 #define SETTING_FLAGS \
   (G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY)
 
-/* Each frame looks at these ... */
+/* Each frame reads these when it comes in or goes out ... */
 #define LIVE_FLAGS \
   (G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING)
 
-/* ... and at these, by its stream time. */
+/* ... and these can be controlled by stream time. */
 #define CONTROLLABLE_FLAGS (LIVE_FLAGS | GST_PARAM_CONTROLLABLE)
 
 static void
@@ -39,26 +39,29 @@ install_live (GObjectClass * klass, const L1L2StabConfig * defaults)
 {
   g_object_class_install_property (klass, PROP_LAMBDA,
       g_param_spec_double ("lambda", "Lambda",
-          "Pull towards the shaken path, per frame diagonal: 0.1 smooths most, "
-          "2 follows the shake; means the same at every size and frame rate. "
-          "A change applies to the frames that come in from then on",
+          "How closely the smooth path follows the camera's path; no unit. "
+          "0 = smoothest, 0.1 = very smooth, 2 = follows most of the shake. A "
+          "value has the same effect at every frame size and frame rate. A "
+          "change applies to the frames that come in after it",
           0, 1000, defaults->lambda, CONTROLLABLE_FLAGS));
   g_object_class_install_property (klass, PROP_CROP_RATIO,
       g_param_spec_double ("crop-ratio", "Crop ratio",
-          "Part of each side that is kept: less leaves more room to move. "
-          "A change applies to the frames that come in from then on, by at most "
-          "0.005 a frame; output-size=crop keeps its size until the next caps",
+          "Part of the width and of the height that is shown, from 0.5 to 0.99. "
+          "A smaller value leaves more room for stabilization. A change applies "
+          "to the frames that come in after it, by at most 0.005 per frame; with "
+          "output-size=crop the output size stays until the next caps",
           0.5, 0.99, defaults->crop_ratio, CONTROLLABLE_FLAGS));
   g_object_class_install_property (klass, PROP_BYPASS,
       g_param_spec_boolean ("bypass", "Bypass",
-          "Show the frames as they came in, whole, with the same delay. A "
-          "change applies at once to the frames that go out, and the picture "
-          "passes over within " G_STRINGIFY (L1L2STAB_BYPASS_FRAMES) " frames",
+          "Show whole frames without stabilization, with the same delay. A "
+          "change applies to the frames that go out after it; the picture moves "
+          "smoothly from one to the other within "
+          G_STRINGIFY (L1L2STAB_BYPASS_FRAMES) " frames",
           FALSE, CONTROLLABLE_FLAGS));
   g_object_class_install_property (klass, PROP_POST_MESSAGES,
       g_param_spec_boolean ("post-messages", "Post messages",
           "Post an element message \"l1l2stab-frame\" for each frame that goes "
-          "out: its motion, path, warp and quality",
+          "out, with its motion, path, warp and quality",
           FALSE, LIVE_FLAGS));
 }
 
@@ -67,21 +70,23 @@ install_path (GObjectClass * klass, const L1L2StabConfig * defaults)
 {
   g_object_class_install_property (klass, PROP_WINDOW,
       g_param_spec_int ("window", "Window",
-          "Frames that are looked at together; as many are held back, which is "
-          "the latency", 4, 900, defaults->window, SETTING_FLAGS));
+          "Number of frames that are optimized together. As many frames are "
+          "held back, so this is the latency in frames",
+          4, 900, defaults->window, SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_OVERLAP,
       g_param_spec_int ("overlap", "Overlap",
-          "Frames that a window shares with the next, from 3 to less than the "
-          "window: more is steadier and costs time (0 = chosen by join)",
+          "Number of frames that a window shares with the next one, from 3 to "
+          "window - 1. More frames give a smoother path and take more time. "
+          "0 = a default that depends on join",
           0, 899, defaults->overlap, SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_JOIN,
       g_param_spec_enum ("join", "Join",
-          "How the paths of two windows are joined; blend needs an overlap of "
+          "How the paths of two windows are joined. blend needs an overlap of "
           "at most half the window", GST_TYPE_L1L2_STAB_JOIN, defaults->join,
           SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_MOTION_MODEL,
       g_param_spec_enum ("motion-model", "Motion model",
-          "What the camera is taken to do from one frame to the next",
+          "The model of the camera's motion between two frames",
           GST_TYPE_L1L2_STAB_MOTION_MODEL, defaults->motion_model,
           SETTING_FLAGS));
 }
@@ -91,23 +96,25 @@ install_picture (GObjectClass * klass, const L1L2StabConfig * defaults)
 {
   g_object_class_install_property (klass, PROP_ROLLING_SHUTTER,
       g_param_spec_enum ("rolling-shutter", "Rolling shutter",
-          "What is done about wobble and skew, which are left when the camera's "
-          "shake is gone; motion-in has nothing for it",
+          "How the wobble and skew of a rolling shutter are corrected. Nothing "
+          "is corrected with motion-in, because a motion file does not hold what "
+          "the correction needs",
           GST_TYPE_L1L2_STAB_ROLLING_SHUTTER, defaults->rolling_shutter,
           SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_INTERPOLATION,
       g_param_spec_enum ("interpolation", "Interpolation",
-          "How pixels are interpolated: sharpness against time",
+          "How pixels are interpolated. Sharper methods take more time",
           GST_TYPE_L1L2_STAB_INTERPOLATION, defaults->interpolation,
           SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_OUTPUT_SIZE,
       g_param_spec_enum ("output-size", "Output size",
-          "Size of the output: the input's, or what crop-ratio leaves of it",
+          "Size of the output: that of the input, or that of the crop window",
           GST_TYPE_L1L2_STAB_OUTPUT_SIZE, defaults->output_size,
           SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_THREADS,
       g_param_spec_int ("threads", "Threads",
-          "Threads that render a frame (0 = as many as there are cores)",
+          "Number of threads that render a frame. 0 = the number of processor "
+          "cores. The output does not depend on it",
           0, 64, defaults->threads, SETTING_FLAGS));
 }
 
@@ -116,12 +123,14 @@ install_files (GObjectClass * klass)
 {
   g_object_class_install_property (klass, PROP_MOTION_IN,
       g_param_spec_string ("motion-in", "Motion in",
-          "File with the motion of each frame, as motion-out writes it: the "
-          "frames are not analysed. NULL = measure", NULL, SETTING_FLAGS));
+          "File to read the camera's motion from, in the format that motion-out "
+          "writes; the frames are then not analyzed. NULL = measure the motion",
+          NULL, SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_MOTION_OUT,
       g_param_spec_string ("motion-out", "Motion out",
-          "Text file to write the motion of each frame to that goes out; one "
-          "that is there is replaced. NULL = none", NULL, SETTING_FLAGS));
+          "Text file to write the motion of each frame to that goes out. An "
+          "existing file is replaced. NULL = write no file",
+          NULL, SETTING_FLAGS));
 }
 
 void
@@ -136,8 +145,9 @@ gst_l1l2_stab_settings_install (GObjectClass * klass)
   install_files (klass);
   g_object_class_install_property (klass, PROP_STATS,
       g_param_spec_boxed ("stats", "Statistics",
-          "Counts, qualities and mean times since the element was started: a "
-          "structure \"l1l2stab-stats\"", GST_TYPE_STRUCTURE,
+          "A structure \"l1l2stab-stats\" with the number of frames, the quality "
+          "of their motion and the mean time of each stage since the element was "
+          "started", GST_TYPE_STRUCTURE,
           G_PARAM_READABLE | G_PARAM_STATIC_STRINGS));
 
   gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_JOIN, 0);
@@ -163,7 +173,7 @@ gst_l1l2_stab_settings_clear (GstL1L2StabSettings * settings)
   g_clear_pointer (&settings->motion_out, g_free);
 }
 
-/* What the property sets, of the type that its values have; NULL: no such property. */
+/* The field that the property sets. Its type is that of the property's values. NULL: no such property. */
 static gpointer
 find_field (GstL1L2StabSettings * settings, guint id)
 {
@@ -217,7 +227,7 @@ set_field (gpointer field, const GValue * value)
   } else if (G_VALUE_HOLDS_STRING (value)) {
     const gchar *name = g_value_get_string (value);
 
-    /* Nobody means a file without a name. */
+    /* An empty name means no file. */
     g_free (*(gchar **) field);
     *(gchar **) field = name && *name ? g_strdup (name) : NULL;
   } else {
@@ -268,8 +278,8 @@ gst_l1l2_stab_settings_get (GstL1L2StabSettings * settings, guint id,
   return TRUE;
 }
 
-/* Caps are worked out, and the library is made for them, at different moments: with properties that change in between,
- * the library would write frames of another size than the buffers have. */
+/* Caps are negotiated at one moment and the instance of the library is made for them at another. If a property changed
+ * in between, the library would write frames of another size than the buffers have. */
 void
 gst_l1l2_stab_settings_adopt (GstL1L2StabSettings * settings, GstPad * pad,
     GstEvent * caps_event)
@@ -304,7 +314,7 @@ gst_l1l2_stab_settings_in_use (GstL1L2StabSettings * settings,
   GST_OBJECT_UNLOCK (settings->object);
 }
 
-/* A control binding sets the property, which locks: the lock is taken only after it. */
+/* A control binding sets the property, which takes the object lock. So the lock must not be held yet. */
 void
 gst_l1l2_stab_settings_sample (GstL1L2StabSettings * settings,
     GstClockTime stream_time, gdouble * lambda, gdouble * crop_ratio)
@@ -318,8 +328,8 @@ gst_l1l2_stab_settings_sample (GstL1L2StabSettings * settings,
   GST_OBJECT_UNLOCK (settings->object);
 }
 
-/* What a controller has for the frame that goes out is asked for alone: all the rest was brought up to date for one
- * that came in a window later. */
+/* Only this value is asked of the controller. The other controlled properties hold the values of the last frame that
+ * came in, which is a window later, and must keep them. */
 gboolean
 gst_l1l2_stab_settings_sample_bypass (GstL1L2StabSettings * settings,
     GstClockTime stream_time)

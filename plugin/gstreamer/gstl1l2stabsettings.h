@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The element's properties: one for each field of L1L2StabConfig that a user may choose, with the defaults of
- * l1l2stab_config_init(), and a few of the element's own. Some are live: lambda and crop-ratio, which each frame
- * samples as it comes in, bypass and post-messages, as it goes out. The fields that are not, and with output-size=crop
- * the size that crop-ratio gives, stay as the last new caps found them. */
+/* The properties of the element: one for each field of L1L2StabConfig that a user may choose, with the defaults of
+ * l1l2stab_config_init(), and a few more. Some apply to single frames: lambda and crop-ratio are sampled when a frame
+ * comes in, bypass and post-messages when it goes out. The others, and with output-size=crop the output size, keep
+ * the values that they had when the caps last changed. */
 #ifndef GST_L1L2_STAB_SETTINGS_H
 #define GST_L1L2_STAB_SETTINGS_H
 
@@ -11,18 +11,18 @@
 
 G_BEGIN_DECLS
 
-/* Read-only, and no setting: its value is the report's. */
+/* Read-only. Its value comes from gst_l1l2_stab_report_stats(). */
 #define GST_L1L2_STAB_PROP_STATS 1
 
 typedef struct
 {
   GstObject *object;            /* its lock guards the rest; not owned */
-  L1L2StabConfig wanted;        /* the properties */
-  L1L2StabConfig in_use;        /* as the last new caps found them ... */
-  gboolean has_caps;            /* ... if there were any */
+  L1L2StabConfig wanted;        /* the present values */
+  L1L2StabConfig in_use;        /* the values when the caps last changed ... */
+  gboolean has_caps;            /* ... if there are caps */
   gboolean bypass;
   gboolean post_messages;
-  gchar *motion_in, *motion_out;        /* names of files, or NULL */
+  gchar *motion_in, *motion_out;        /* file names, or NULL */
 } GstL1L2StabSettings;
 
 /* Installs the properties and registers their enumerations. */
@@ -39,28 +39,28 @@ gboolean gst_l1l2_stab_settings_set (GstL1L2StabSettings * settings, guint id,
 gboolean gst_l1l2_stab_settings_get (GstL1L2StabSettings * settings, guint id,
     GValue * value);
 
-/* New caps come in on `pad`: from now on the properties of this moment are in use. The same caps once more change
- * nothing. */
+/* Called when caps come in on `pad`. If they differ from those before, the present values become those in use. */
 void gst_l1l2_stab_settings_adopt (GstL1L2StabSettings * settings,
     GstPad * pad, GstEvent * caps_event);
 
-/* There are no caps any more. */
+/* Called when the stream ends: there are no caps any more. */
 void gst_l1l2_stab_settings_release (GstL1L2StabSettings * settings);
 
-/* What is in use; before there are caps, the properties. */
+/* The values in use; before there are caps, the present ones. */
 void gst_l1l2_stab_settings_in_use (GstL1L2StabSettings * settings,
     L1L2StabConfig * config);
 
-/* For a frame that comes in at this stream time; controlled properties are brought up to date. NONE: not known. */
+/* The values for a frame that comes in at this stream time; NONE: not known. Controlled properties are updated
+ * first. */
 void gst_l1l2_stab_settings_sample (GstL1L2StabSettings * settings,
     GstClockTime stream_time, gdouble * lambda, gdouble * crop_ratio);
 
-/* For a frame that goes out, by its stream time. */
+/* The values for a frame that goes out. stream_time: that of the frame. */
 gboolean gst_l1l2_stab_settings_sample_bypass (GstL1L2StabSettings * settings,
     GstClockTime stream_time);
 gboolean gst_l1l2_stab_settings_post_messages (GstL1L2StabSettings * settings);
 
-/* Each NULL or to be freed. */
+/* Copies of the file names, each to be freed or NULL. */
 void gst_l1l2_stab_settings_dup_files (GstL1L2StabSettings * settings,
     gchar ** motion_in, gchar ** motion_out);
 

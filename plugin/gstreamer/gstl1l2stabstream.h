@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The frames that are held between the pads, the events among them, and the instance of the library. Frames go in by
- * push(), become ready, and come out by peek() and render(). The stream knows no pads and no base class. The stream lock
- * of the sink pad guards all of it. */
+ * push(), become ready, and come out by peek() and render(). The stream knows no pads and no base class. The stream
+ * lock of the sink pad guards all of it. */
 #ifndef GST_L1L2_STAB_STREAM_H
 #define GST_L1L2_STAB_STREAM_H
 
@@ -55,9 +55,9 @@ GstFlowReturn gst_l1l2_stab_stream_set_live (GstL1L2StabStream * stream,
 GstFlowReturn gst_l1l2_stab_stream_push (GstL1L2StabStream * stream,
     GstBuffer * buffer, GstClockTime arrival, GstClockTime stream_time);
 
-/* Makes the frames ready that have been held for `limit`, with the look-ahead that they have. A frame has been held from
- * its arrival to the running time `now`, and from its timestamp to the timestamp `position` that the input has come to.
- * Either may be NONE. */
+/* Makes the frames ready that have been held for `limit`, with the look-ahead that they have. A frame has been held
+ * from its arrival to the running time `now`, and from its timestamp to the timestamp `position` that the input has
+ * come to. Either may be NONE. */
 GstFlowReturn gst_l1l2_stab_stream_hurry (GstL1L2StabStream * stream,
     GstClockTime limit, GstClockTime now, GstClockTime position);
 

@@ -28,7 +28,8 @@ gst_l1l2_stab_timer_clear (GstL1L2StabTimer * timer)
   g_rec_mutex_clear (&timer->task_lock);
 }
 
-/* Waits until the time that is due. Called with the lock held, and releases it while waiting. TRUE: the time has come. */
+/* Waits until the time that is due. Called with the lock held, and releases it while waiting. TRUE: the time has
+ * come. */
 static gboolean
 wait_until_due (GstL1L2StabTimer * timer, GstClock * clock)
 {

@@ -25,7 +25,8 @@ typedef struct
   GRecMutex task_lock;
 } GstL1L2StabTimer;
 
-/* `expire` is called from the task, without a lock. It has to check whether anything is due, and to set the next time. */
+/* `expire` is called from the task, without a lock. It has to check whether anything is due, and to set the next
+ * time. */
 void gst_l1l2_stab_timer_init (GstL1L2StabTimer * timer, GstElement * element,
     void (*expire) (gpointer user_data), gpointer user_data);
 void gst_l1l2_stab_timer_clear (GstL1L2StabTimer * timer);

@@ -25,7 +25,7 @@ except (ImportError, ValueError) as reason:
     sys.exit(clip.SKIPPED)
 
 TOP = Path(sys.argv.pop(1))
-PLACES = ['README.md', 'docs/element.md', 'docs/control.md', 'docs/motion-file.md', 'plugin/plugin.c']
+PLACES = ['README.md', 'docs/element.md', 'docs/control.md', 'docs/motion-file.md', 'plugin/gstreamer/plugin.c']
 FRAMES = 50
 LIVE_FRAMES = 45
 folder = clip.folder()

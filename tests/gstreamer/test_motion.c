@@ -5,8 +5,8 @@
 /* No frame has the timestamp of the frame before it. */
 #define NO_FRAME N_FRAMES
 
-/* The pictures of a clip with a cut, one after the other. Frame `repeated` and the one after it have the timestamp of the
- * frame before. *analysis: ns per frame. */
+/* The pictures of a clip with a cut, one after the other. Frame `repeated` and the one after it have the timestamp of
+ * the frame before. *analysis: ns per frame. */
 static GByteArray *
 run (const gchar * in, const gchar * out, L1L2StabMotionModel model,
     guint repeated, guint64 * analysis)

@@ -44,7 +44,8 @@ goes_in (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
   return GST_PAD_PROBE_OK;
 }
 
-/* A pad that could not push caps while it was flushing pushes them before the next segment, so segments do not count. */
+/* A pad that could not push caps while it was flushing pushes them before the next segment, so segments are
+ * not counted. */
 static gboolean
 has_frames (const Monitor * monitor)
 {

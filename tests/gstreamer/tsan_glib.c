@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Shows the locks of GLib to ThreadSanitizer, which cannot see them because GLib is not built with it: a GMutex and a
  * GCond are made of atomics, and reference counts too. Built into the tests with -Db_sanitize=thread, these functions
- * replace those of GLib and GStreamer: they call them, and tell the sanitizer what they order. A GRecMutex is a mutex of
- * the system that GLib allocates; the sanitizer knows the mutex, but not how its address gets to another thread. */
+ * replace those of GLib and GStreamer: they call them, and tell the sanitizer what they order. A GRecMutex is a mutex
+ * of the system that GLib allocates; the sanitizer knows the mutex, but not how its address gets to another thread. */
 #include <dlfcn.h>
 #include <gst/gst.h>
 #include <sanitizer/tsan_interface.h>

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""A shaky clip whose frames tell their number, and what a file holds after a client has had it.
+"""A shaky clip whose frames show their number, and functions that read a client's output file.
 
 The camera looks at a wall of random tiles and shakes by up to SHAKE pixels. On the wall is the frame's number: eight
-large blocks, white for 1, which can be read wherever the stabilizer moves them. With sound, there is a flash of light
-for FLASH_FRAMES frames each second, and a beep that begins with it.
+large blocks, white for 1, which can be read wherever the stabilizer moves them. With audio, there is a flash of light
+for FLASH_FRAMES frames every second, and a beep that begins with it.
 """
 import array
 import atexit
@@ -35,7 +35,7 @@ FLASH_FRAMES = 2
 RATE, BEEP_HZ, BEEP_SECONDS = 48000, 1000, 0.1
 FRAME = Gst.SECOND / FPS
 
-# Half a minute is enough for each of these programs: what takes this long is stuck.
+# Half a minute is enough for each of these programs. A program that takes this long is stuck.
 WATCHDOG_SECONDS = 100
 
 WALL_WIDTH, WALL_HEIGHT = WIDTH + 2 * SHAKE, HEIGHT + 2 * SHAKE
@@ -46,12 +46,12 @@ MIDDLE = (WHITE + BLACK) // 2
 class Frame(NamedTuple):
     time: int       # stream time, nanoseconds
     number: int     # as read from the picture, modulo 256
-    luma: float     # mean of the frame's upper edge: tells a flash
-    edge: bytes     # some rows of it: tells how much the picture moves
+    luma: float     # mean of the upper edge of the frame: shows a flash
+    edge: bytes     # some rows of the upper edge: shows how much the picture moves
 
 
 def begin(*programs, elements=()):
-    """To be called first: the watchdog, GStreamer, and what the test needs or else is skipped for."""
+    """To be called first: starts the watchdog and GStreamer, and skips the test if something it needs is missing."""
     faulthandler.dump_traceback_later(WATCHDOG_SECONDS, exit=True)
     Gst.init(None)
     missing = [p for p in programs if not shutil.which(p)]
@@ -74,7 +74,7 @@ def folder():
 # ---- the clip ----
 
 def wall():
-    """Rows of luma with frame number 0 on it, drawn anew for each frame by number_rows()."""
+    """Rows of luma. with_number() draws the number of a frame on them."""
     dice = random.Random(1)
     rows = []
     for _ in range(-(-WALL_HEIGHT // TILE)):
@@ -100,7 +100,7 @@ def is_flash(number):
 
 
 def pictures(count, flashes=False):
-    """I420 frames, as bytes. The shake is a hand's: some steps to and fro, never steady."""
+    """I420 frames, as bytes. The shake is like that of a hand: small random steps."""
     still = wall()
     chroma = bytes([128]) * (WIDTH * HEIGHT // 2)
     dice = random.Random(2)
@@ -135,7 +135,7 @@ def feed(source, chunks, duration_of):
 
 
 def make(path, frames=90, audio=False):
-    """Writes the clip as QuickTime: H.264 with a key frame each half second, and sound as it is."""
+    """Writes the clip as QuickTime: H.264 with a key frame every half second, and lossless audio."""
     description = (
         f'appsrc name=video format=time max-bytes=0 caps=video/x-raw,format=I420,width={WIDTH},height={HEIGHT},'
         f'framerate={FPS}/1 ! x264enc speed-preset=superfast pass=qual quantizer=18 key-int-max=15 ! h264parse ! '
@@ -159,7 +159,7 @@ def make(path, frames=90, audio=False):
 # ---- what came out ----
 
 def wait(pipeline, seconds=30):
-    """Until the end of the stream; an error is raised. Then the pipeline is shut down."""
+    """Waits for the end of the stream and stops the pipeline. Raises the error of the pipeline, if there is one."""
     message = pipeline.get_bus().timed_pop_filtered(
         seconds * Gst.SECOND, Gst.MessageType.EOS | Gst.MessageType.ERROR)
     pipeline.set_state(Gst.State.NULL)
@@ -177,7 +177,7 @@ def play(description):
 
 
 def read_number(luma, width, height, zoom=1.05):
-    """The number in a picture: the middle of each block. They are large enough for a zoom that is roughly known."""
+    """The number in a picture, read in the middle of each block. The blocks are large, so the zoom can be rough."""
     number = 0
     for i in range(8):
         x = width // 2 + round(zoom * BLOCK * (i % 4 - 1.5))
@@ -188,7 +188,7 @@ def read_number(luma, width, height, zoom=1.05):
 
 
 def time_of(sample):
-    """When a player shows it: a file's own times may begin anywhere, and its segment says where."""
+    """The stream time of a sample. The timestamps of a file can begin anywhere; its segment says where."""
     return sample.get_segment().to_stream_time(Gst.Format.TIME, sample.get_buffer().pts)
 
 
@@ -220,7 +220,7 @@ def frames_of(source):
 
 
 def samples_of(path):
-    """The sound of a file: (time of its first sample in nanoseconds, samples at RATE, one channel)."""
+    """The audio of a file: (time of its first sample in nanoseconds, samples at RATE, one channel)."""
     pipeline = Gst.parse_launch(
         f'filesrc location={path} ! decodebin ! audioconvert ! audioresample ! audio/x-raw,format=S16LE,rate={RATE},'
         'channels=1 ! appsink name=sink sync=false')
@@ -236,7 +236,7 @@ def samples_of(path):
 
 
 def unrest(frames):
-    """How much the picture changes from frame to frame, flashes left out: the mean absolute difference of the edge."""
+    """How much the picture moves: mean absolute difference of the upper edges of successive frames, without flashes."""
     total = count = 0
     for a, b in zip(frames, frames[1:]):
         if a.luma < WHITE - 30 and b.luma < WHITE - 30:
@@ -246,7 +246,7 @@ def unrest(frames):
 
 
 def run(*command, seconds=40, **environment):
-    """Runs a program to its end; what it said, if it ended well."""
+    """Runs a program to its end and returns its output. Raises an error if its exit status is not 0."""
     result = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                             stderr=subprocess.STDOUT, timeout=seconds, text=True, errors='replace',
                             env={**os.environ, **environment}, check=False)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Sound and picture stay together: flash and beep are found in the output files, where they are in the input at once.
+"""Audio and video stay in sync: flash and beep, which coincide in the input, are found in the output files.
 
 The pipeline is the documented one: the queue of the sound's branch holds as much as the window.
 """
@@ -40,7 +40,7 @@ def beeps(path):
 
 class Sync(unittest.TestCase):
     def check(self, path, tolerance):
-        """Flash and beep of each second: with each other, and where they were filmed."""
+        """The flash and the beep of each second coincide, and are at their time in the input."""
         lights, frames = flashes(path)
         sounds = beeps(path)
         self.assertEqual([f.number for f in frames], [*range(SECONDS * FPS)])
@@ -58,16 +58,16 @@ class Sync(unittest.TestCase):
                   f'{audio} ! out.')
         return out
 
-    def test_the_clip_itself_has_both_at_once(self):
+    def test_the_clip_itself_is_in_sync(self):
         self.check(film, 0.1 * FRAME)
 
-    def test_an_mp4_file_has_them_within_a_frame(self):
+    def test_an_mp4_file_is_in_sync_within_a_frame(self):
         self.check(self.stabilize('out.mp4', 'window=40', 'avenc_aac', 'mp4mux'), FRAME)
 
-    def test_an_mp4_file_of_a_window_longer_than_the_clip_has_them_within_a_frame(self):
+    def test_with_a_window_longer_than_the_clip_an_mp4_file_is_in_sync_within_a_frame(self):
         self.check(self.stabilize('long.mp4', 'window=150', 'avenc_aac', 'mp4mux'), FRAME)
 
-    def test_a_matroska_file_has_them_within_a_frame(self):
+    def test_a_matroska_file_is_in_sync_within_a_frame(self):
         self.check(self.stabilize('out.mkv', '', 'flacenc', 'matroskamux'), FRAME)
 
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Every launch line of the documentation does what is said of it: test_documented_lines.py TOP
+"""Every launch line of the documentation does what the documentation says: test_documented_lines.py TOP
 
-The files that the lines read are there, and those that they write are looked at. A test source stands for each camera
-and microphone, a test sink for each screen.
+The input files of the lines are created, and their output files are checked. A test source replaces each camera and
+microphone, and a test sink replaces each screen.
 """
 import re
 import sys
@@ -35,7 +35,7 @@ clip.play(f'filesrc location={film} ! decodebin ! videoconvert ! video/x-raw,for
 
 
 def serve_film():
-    """The film as an RTSP camera's. Its address."""
+    """Serves the clip like an RTSP camera, and returns its address."""
     server = GstRtspServer.RTSPServer()
     server.set_address('127.0.0.1')
     server.set_service('0')
@@ -57,19 +57,19 @@ STAND_INS = {
 
 
 def launch_lines(path):
-    """The lines of a text's examples, those that a backslash continues put together."""
+    """The launch lines of a text. Lines that a backslash continues are joined."""
     text = re.sub(r' *\\\n[ *]*', ' ', path.read_text(encoding='utf-8'))
     return re.findall(r'^(?:    | \* )((?:gst|ges)-launch-1\.0 .*)$', text, re.MULTILINE)
 
 
 def frames_of_ges(path):
-    """It enlarges all pictures to 1280x720, with borders."""
+    """The frames of a file of ges-launch-1.0, which enlarges all frames to 1280x720, with borders."""
     return clip.frames_of(f'filesrc location={path} ! decodebin ! videoconvert ! videocrop left=160 right=160 ! '
                           f'videoscale ! video/x-raw,width={clip.WIDTH},height={clip.HEIGHT}')
 
 
 def numbers_side_by_side(path):
-    """Of the left and the right half of each frame."""
+    """The numbers in the left half and in the right half of each frame."""
     halves = []
     for x in 0, clip.WIDTH:
         frames = clip.frames_of(f'filesrc location={path} ! decodebin ! videoconvert ! '

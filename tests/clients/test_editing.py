@@ -14,7 +14,7 @@ VIDEO_CAPS = f'video/x-raw,width={clip.WIDTH},height={clip.HEIGHT},framerate={FP
 
 
 def render(*timeline):
-    """What ges-launch-1.0 makes of a timeline."""
+    """The frames that ges-launch-1.0 renders from a timeline."""
     out = folder / 'out.mov'
     clip.run('ges-launch-1.0', '--no-interactive', *timeline, '--track-types', 'video', '--video-caps', VIDEO_CAPS,
              '-o', out, '--format', 'video/quicktime,variant=iso:video/x-h264')
@@ -22,14 +22,14 @@ def render(*timeline):
 
 
 class Rendering(unittest.TestCase):
-    def test_trimmed_clips_give_exactly_their_frames_one_after_the_other(self):
+    def test_trimmed_clips_give_exactly_their_frames_in_order(self):
         frames = render('+clip', film, 'inpoint=1.0', 'duration=1.0', '+effect', 'l1l2stab window=10',
                         '+clip', film, 'inpoint=0.5', 'duration=0.5', '+effect', 'l1l2stab window=40')
         self.assertEqual([f.number for f in frames], [*range(30, 60), *range(15, 30)])
         for i, frame in enumerate(frames):
             self.assertAlmostEqual(frame.time / FRAME, i, delta=0.01)
 
-    def test_the_effect_steadies_the_clip_that_it_is_put_on_and_no_other(self):
+    def test_the_effect_stabilizes_its_own_clip_and_no_other(self):
         frames = render('+clip', film, 'duration=1.0', '+clip', film, 'duration=1.0', '+effect', 'l1l2stab')
         self.assertEqual([f.number for f in frames], [*range(30)] * 2)
         self.assertLess(clip.unrest(frames[30:]), 0.2 * clip.unrest(frames[:30]))
@@ -42,7 +42,7 @@ class Rendering(unittest.TestCase):
 
 
 class Preview(unittest.TestCase):
-    """An editor's viewer: two clips, from 0 s and from 1 s on, each with its own stabilizer."""
+    """The viewer of an editor: two clips, at 0 s and at 1 s, each with its own stabilizer."""
 
     def setUp(self):
         try:
@@ -88,7 +88,7 @@ class Preview(unittest.TestCase):
             yield clip.frame_of(sample)
 
     def numbers_from(self, first, count):
-        """Seeks to a frame of the timeline. The numbers of the frames from there on; some from before may precede."""
+        """Seeks to a frame of the timeline. Returns the numbers of the next frames. A few old frames can come first."""
         # Rounded up: a time before the frame's own belongs to the frame before it.
         self.assertTrue(self.pipeline.seek_simple(Gst.Format.TIME, Gst.SeekFlags.FLUSH | Gst.SeekFlags.ACCURATE,
                                                   -(-first * Gst.SECOND // FPS)))
@@ -97,12 +97,12 @@ class Preview(unittest.TestCase):
         frames = itertools.chain(itertools.dropwhile(lambda f: round(f.time / FRAME) != first, late), self.frames())
         return [frame.number for frame in itertools.islice(frames, count)]
 
-    def test_each_seek_shows_the_frames_from_there_on_across_the_cut_too(self):
+    def test_each_seek_shows_the_frames_from_its_target_on_even_across_the_cut(self):
         for frame, expected in ((15, [45, 46, 47]), (36, [21, 22, 23]), (0, [30, 31, 32]), (28, [58, 59, 15, 16]),
                                 (59, [44])):
             self.assertEqual(self.numbers_from(frame, len(expected)), expected)
 
-    def test_a_clip_that_is_trimmed_while_it_plays_goes_on_with_its_new_frames(self):
+    def test_a_clip_that_is_trimmed_during_playback_continues_with_its_new_frames(self):
         self.assertEqual(self.numbers_from(0, 3), [30, 31, 32])
         self.clips[1].set_inpoint(0)
         self.clips[1].set_duration(Gst.SECOND // 2)

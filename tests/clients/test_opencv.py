@@ -19,7 +19,7 @@ PIPELINE = (f'filesrc location={film} ! decodebin ! l1l2stab window=20 ! videoco
 
 
 def numbers(*arguments):
-    """The numbers of the frames that the program got."""
+    """The numbers of the frames that the program read."""
     output = subprocess.run([READER, *map(str, arguments)], stdout=subprocess.PIPE, timeout=30, check=True).stdout
     found = []
     while output:
@@ -35,10 +35,10 @@ class OpenCV(unittest.TestCase):
     def test_it_reads_every_frame_to_the_end(self):
         self.assertEqual(numbers(PIPELINE), [*range(FRAMES)])
 
-    def test_it_may_close_while_frames_are_held(self):
+    def test_it_can_close_while_frames_are_held(self):
         self.assertEqual(numbers(PIPELINE, 5), [*range(5)])
 
-    def test_it_may_close_before_the_first_frame(self):
+    def test_it_can_close_before_the_first_frame(self):
         self.assertEqual(numbers(PIPELINE, 0), [])
 
 

@@ -23,10 +23,10 @@ RIGHT, LEFT = b'\x1b[C', b'\x1b[D'
 
 
 class GstPlay(unittest.TestCase):
-    """The stats tracer tells what leaves the element: nothing is put into the pipeline for it."""
+    """The stats tracer logs what leaves the element, so nothing has to be added to the pipeline."""
 
     def play(self, path, *keys):
-        """At a terminal, presses a key every KEY_SECONDS and waits for the end. The times of the stabilized frames."""
+        """In a terminal, presses a key every KEY_SECONDS and waits for the end. Returns the times of the frames."""
         trace = folder / 'trace'
         ours, players = pty.openpty()
         player = subprocess.Popen(
@@ -65,7 +65,7 @@ class GstPlay(unittest.TestCase):
         for i, frame in enumerate(times):
             self.assertAlmostEqual(frame, i, delta=0.01)
 
-    def test_the_keys_for_seek_rate_and_direction_give_frames_in_a_row(self):
+    def test_the_keys_for_seek_rate_and_direction_give_consecutive_frames(self):
         times = self.play(film, RIGHT, LEFT, b'+', b'd', b'q')
         # The first frame after a seek is cut to begin there, and may be as good as the next one.
         numbers = [math.floor(t + 0.01) for t in times]
@@ -75,7 +75,7 @@ class GstPlay(unittest.TestCase):
 
 
 class Playbin(unittest.TestCase):
-    """The frames are those that playbin gives without a filter: each once, in order, and steady."""
+    """playbin gives the same frames as without a filter, each once, in order, and stabilized."""
 
     SEGMENTS = [  # rate, first frame, end or None for the film's, what playbin then shows
         (1, 15, None, [*range(15, FRAMES)]),
@@ -127,10 +127,10 @@ class Playbin(unittest.TestCase):
     def test_all_rates_and_seeks_give_each_frame_once_in_order(self):
         self.check_segments('l1l2stab window=10')
 
-    def test_a_window_longer_than_the_segments_does_so_too(self):
+    def test_a_window_longer_than_the_segments_gives_each_frame_once_in_order(self):
         self.check_segments('l1l2stab')
 
-    def test_forward_and_backward_the_picture_is_steady(self):
+    def test_the_picture_is_stable_forward_and_backward(self):
         self.open(None)
         shaken = clip.unrest(self.frames())
         self.open('l1l2stab')
@@ -138,7 +138,7 @@ class Playbin(unittest.TestCase):
         self.seek(-1, 0, FRAMES)
         self.assertLess(clip.unrest(self.frames()), 0.2 * shaken)
 
-    def test_fifty_seeks_in_a_hurry_leave_the_right_frames(self):
+    def test_fifty_fast_seeks_give_the_right_frames(self):
         dice = random.Random(3)
         self.open('l1l2stab window=10')
         for _ in range(50):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Python bindings: properties, controllers and messages, told by the pictures that come out."""
+"""Python bindings: properties, controllers and messages, checked by the output frames."""
 import sys
 import unittest
 
@@ -22,7 +22,7 @@ film = clip.make(folder / 'film.mov', FRAMES)
 
 
 def magnification(sample):
-    """How much a picture is enlarged, from a number that begins with the bits 1001: its dark blocks' width."""
+    """The zoom of a picture with a number that begins with the bits 1001, from the width of the dark blocks."""
     width, height = clip.WIDTH, clip.HEIGHT
     luma = sample.get_buffer().extract_dup(0, width * height)
     row = luma[(height // 2 - clip.BLOCK // 2) * width:][:width]
@@ -38,7 +38,7 @@ class Properties(unittest.TestCase):
     def setUp(self):
         self.stabilizer = Gst.ElementFactory.make('l1l2stab')
 
-    def test_values_are_kept_and_names_of_choices_understood(self):
+    def test_values_are_kept_and_enumerations_accept_their_names(self):
         for name, value in ('lambda', 2.0), ('crop-ratio', 0.75), ('window', 40), ('overlap', 12), ('threads', 1):
             self.stabilizer.set_property(name, value)
             self.assertEqual(self.stabilizer.get_property(name), value)
@@ -72,7 +72,7 @@ class Playing(unittest.TestCase):
     def check_numbers(self, samples):
         self.assertEqual([clip.frame_of(sample, zoom=1.2).number for sample in samples], [*range(FRAMES)])
 
-    def test_a_controller_zooms_by_stream_time_in_spite_of_the_delay(self):
+    def test_a_controller_zooms_by_stream_time_despite_the_delay(self):
         """The crop ratio is 0.9 for two seconds, goes to 0.75 within the next two, and stays there."""
         self.open('window=30')
         source = GstController.InterpolationControlSource()
@@ -91,7 +91,7 @@ class Playing(unittest.TestCase):
         for sample in list(self.samples())[144:]:
             self.assertAlmostEqual(magnification(sample), 1 / 0.9, delta=0.06)
 
-    def test_a_property_set_while_it_plays_loses_no_frame(self):
+    def test_a_property_set_during_playback_loses_no_frame(self):
         self.open('window=20')
         samples = []
         for i, sample in enumerate(self.samples()):
@@ -100,7 +100,7 @@ class Playing(unittest.TestCase):
             self.stabilizer.set_property('crop-ratio', 0.75 + i % 15 / 100)
         self.check_numbers(samples)
 
-    def test_the_latency_is_announced_by_a_message_and_given_to_a_query(self):
+    def test_the_latency_is_posted_as_a_message_and_answers_a_query(self):
         self.open('window=45')
         samples = self.samples()
         next(samples)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""A camera behind l1l2stab in an RTSP server: two viewers over loopback, the second comes later."""
+"""An RTSP server with a camera and l1l2stab: two viewers over loopback, of which the second comes later."""
 import itertools
 import sys
 import threading
@@ -26,7 +26,7 @@ SERVED = (
 
 
 class Camera:
-    """Serves the film without end, in real time, in a thread of its own."""
+    """Serves the clip endlessly, in real time, in a thread of its own."""
 
     def __init__(self):
         self.loop = GLib.MainLoop()
@@ -87,7 +87,7 @@ class Rtsp(unittest.TestCase):
             self.assertEqual(b.number, (a.number + 1) % FPS)
             self.assertGreater(b.time, a.time)
 
-    def test_two_viewers_see_every_frame_and_none_too_late(self):
+    def test_two_viewers_get_every_frame_in_time(self):
         camera = Camera()
         first = Viewer(camera.address())
         self.check(first.frames(20), 20)

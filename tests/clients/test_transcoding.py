@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""uritranscodebin with l1l2stab as its video filter: a file becomes another, with its sound, in one line."""
+"""uritranscodebin with l1l2stab as its video filter: a file is transcoded with its audio."""
 import unittest
 
 import clip
@@ -26,10 +26,10 @@ class Transcoding(unittest.TestCase):
         start, samples = clip.samples_of(out)
         self.assertAlmostEqual((start / 1e9 + len(samples) / clip.RATE), FRAMES / FPS, delta=0.1)
 
-    def test_to_mp4_every_frame_and_the_sound_come_over(self):
+    def test_an_mp4_file_has_every_frame_and_the_audio(self):
         self.check('l1l2stab', 'video/quicktime,variant=iso:video/x-h264:audio/mpeg,mpegversion=4')
 
-    def test_to_webm_every_frame_and_the_sound_come_over(self):
+    def test_a_webm_file_has_every_frame_and_the_audio(self):
         self.check('l1l2stab', 'video/webm:video/x-vp8:audio/x-opus')
 
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """An application in Python: properties, controller, messages, statistics, metas and motion files, in real pipelines.
 
-Exits with 77 (skipped) where the bindings are not installed.
+Exits with status 77 (skipped) if the bindings are not installed.
 """
 import locale
 import os
@@ -28,7 +28,7 @@ FRAME_NS = Gst.SECOND // 25
 
 
 def matrix(structure, field):
-    """Nine doubles: by the function that is made for bindings."""
+    """The nine doubles of a field, read by the function that is made for bindings."""
     found, array = structure.get_array(field)
     assert found, field
     return [array.get_nth(i) for i in range(array.n_values)]
@@ -40,7 +40,7 @@ def apply(m, x, y):
 
 
 class Run:
-    """Plays a pipeline to its end; keeps the element's messages, and buffers by their time as `see` wants them."""
+    """Plays a pipeline to its end. Keeps the messages of the element, and see(buffer) of each output buffer."""
 
     def __init__(self, stab, see=None, after='fakesink name=sink signal-handoffs=true', prepare=None):
         self.pipeline = Gst.parse_launch(f'{SOURCE} ! l1l2stab name=stab window=8 {stab} ! {after}')
@@ -72,7 +72,7 @@ class Run:
 
 
 class Client(unittest.TestCase):
-    def test_every_property_tells_what_it_does(self):
+    def test_every_property_has_a_description(self):
         stab = Gst.ElementFactory.make('l1l2stab')
         own = [spec for spec in stab.list_properties() if spec.owner_type == stab.__gtype__]
         self.assertGreaterEqual(len(own), 14)
@@ -97,7 +97,7 @@ class Client(unittest.TestCase):
             self.assertEqual(message.get_uint64('stream-time').value, index * FRAME_NS)
             self.assertAlmostEqual(message.get_double('crop-ratio').value, 0.9 - 0.1 * index / FRAMES, places=9)
 
-    def test_lambda_set_from_outside_travels_with_the_frames_that_come_in_later(self):
+    def test_a_new_lambda_applies_to_the_frames_that_come_in_later(self):
         switched = []
 
         def on_input(pad, info, stab):
@@ -112,7 +112,7 @@ class Client(unittest.TestCase):
         values = [message.get_double('lambda').value for message in run.messages]
         self.assertEqual(values, [0.5] * 20 + [3.0] * (FRAMES - 20))
 
-    def test_a_box_in_the_picture_is_mapped_back_also_after_a_converter_and_a_scaler(self):
+    def test_a_box_is_mapped_back_even_after_a_converter_and_a_scaler(self):
         def look(buffer):
             meta = buffer.get_custom_meta('GstL1L2StabMeta').get_structure()
             to_source, from_source = matrix(meta, 'to-source'), matrix(meta, 'from-source')
@@ -131,7 +131,7 @@ class Client(unittest.TestCase):
             for x, y in corners: # nothing comes from outside the source
                 self.assertTrue(-1e-6 <= x <= 320 + 1e-6 and -1e-6 <= y <= 240 + 1e-6)
 
-    def test_the_statistics_are_a_structure_that_adds_up(self):
+    def test_the_statistics_add_up(self):
         stats = Run('').stats
         self.assertEqual(stats.get_name(), 'l1l2stab-stats')
         self.assertEqual(stats.get_uint64('frames-in').value, FRAMES)
@@ -144,7 +144,7 @@ class Client(unittest.TestCase):
         for field in ('l1l2stab-frame', 'motion=(double)<', 'path=(double)<', 'model=(string)', 'quality=(double)'):
             self.assertIn(field, text)
 
-    def test_a_second_run_from_a_motion_file_is_the_same_to_the_byte(self):
+    def test_a_second_run_from_a_motion_file_gives_the_same_bytes(self):
         with tempfile.TemporaryDirectory() as folder:
             first = Run(f'motion-out={folder}/a', lambda b: b.extract_dup(0, b.get_size()))
             second = Run(f'motion-in={folder}/a', lambda b: b.extract_dup(0, b.get_size()))
@@ -152,7 +152,7 @@ class Client(unittest.TestCase):
         self.assertEqual(first.seen, second.seen)
         self.assertEqual(second.stats.get_uint64('track-time').value, 0)
 
-    def test_a_motion_file_of_other_frames_is_an_error_that_says_so(self):
+    def test_a_motion_file_for_other_frames_is_an_error_that_says_so(self):
         with tempfile.TemporaryDirectory() as folder:
             with open(f'{folder}/a', 'w', encoding='ascii') as file:
                 file.write('l1l2stab-motion 1\nsize 640 480\n')
@@ -160,7 +160,7 @@ class Client(unittest.TestCase):
         self.assertTrue(error.matches(Gst.ResourceError.quark(), Gst.ResourceError.READ))
         self.assertIn('640x480', error.message)
 
-    def test_a_motion_file_is_the_same_where_numbers_have_a_comma(self):
+    def test_a_motion_file_is_the_same_in_a_locale_with_a_decimal_comma(self):
         with tempfile.TemporaryDirectory() as folder:
             made = subprocess.run(['localedef', '-i', 'de_DE', '-f', 'UTF-8', f'{folder}/de_DE.UTF-8'],
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)

@@ -36,7 +36,7 @@ remove_folder (void)
   g_free (folder);
 }
 
-/* The element, at rest until it is told its files. */
+/* The element in state NULL, with these motion files. */
 static inline GstHarness *
 harness_new (const gchar * in, const gchar * out)
 {

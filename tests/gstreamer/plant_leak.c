@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A test program that leaves a buffer behind, so that no_leaks.sh is seen to find it. */
+/* A program that leaks a buffer on purpose. It shows that no_leaks.sh finds leaks. */
 #include <gst/check/gstcheck.h>
 
 GST_START_TEST (a_buffer_is_left_behind)

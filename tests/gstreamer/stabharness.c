@@ -67,7 +67,7 @@ stab_frame_level (guint index)
   return 20 + index % 200;
 }
 
-/* The level, of 8 bits, as component c has it in memory. */
+/* An 8-bit level as component c stores it in memory. */
 static guint
 component_level (const GstVideoFormatInfo * format, guint c, guint8 level)
 {
@@ -75,7 +75,7 @@ component_level (const GstVideoFormatInfo * format, guint c, guint8 level)
       << GST_VIDEO_FORMAT_INFO_SHIFT (format, c);
 }
 
-/* 1.22 has the second chroma of P010 at byte 1 instead of 2. */
+/* GStreamer 1.22 puts the second chroma component of P010 at byte 1 instead of 2. */
 guint8 *
 stab_frame_component (const GstVideoFrame * frame, guint c, gint x, gint y)
 {

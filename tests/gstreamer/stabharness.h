@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the element's tests share: a harness around it, frames that can be told apart, and a record of what comes out
- * in which order. */
+/* What the tests of the element share: a harness around it, frames that differ from each other, and a record of the
+ * order in which frames and events come out. */
 #ifndef STAB_HARNESS_H
 #define STAB_HARNESS_H
 
@@ -15,14 +15,15 @@ G_BEGIN_DECLS
   "video/x-raw, format=I420, width=64, height=48, framerate=25/1"
 #define FRAME_DURATION (40 * GST_MSECOND)
 
-/* Whether GStreamer has the elements of this NULL-terminated list. Prints that tests are skipped for want of them. */
+/* True if GStreamer has all elements of this NULL-terminated list. Otherwise prints which ones are missing. */
 gboolean stab_have_elements (const gchar * const *names);
 
-/* The element with these properties (name, value, ..., NULL), playing, with a bus. `caps` may be NULL. */
+/* A harness around the element with these properties (name, value, ..., NULL), playing, with a bus. `caps` may be
+ * NULL. */
 GstHarness *stab_harness_new (const gchar * caps, const gchar * property, ...)
     G_GNUC_NULL_TERMINATED;
 
-/* Also takes the bus down. */
+/* Frees the harness and the bus. */
 void stab_harness_free (GstHarness * h);
 
 /* The next message of this type, or NULL; does not wait. */
@@ -37,23 +38,23 @@ guint8 stab_frame_level (guint index);
 GstBuffer *stab_frame_new_at (GstHarness * h, GstClockTime pts,
     GstClockTime duration);
 
-/* Where component `c` of pixel (x, y), counted in that component's samples, is: one or two bytes. */
+/* The address of sample (x, y) of component `c`, which has one or two bytes. */
 guint8 *stab_frame_component (const GstVideoFrame * frame, guint c, gint x,
     gint y);
 
-/* Fails unless every pixel of `buffer`, of these caps, has that level. */
+/* Fails unless every component of every pixel of `buffer` has this level. */
 void stab_frame_assert_level (GstBuffer * buffer, GstCaps * caps, guint8 level);
 
-/* Frames `start` to `start + n - 1`; each must be taken with GST_FLOW_OK. */
+/* Pushes frames `start` to `start + n - 1`. Each push must return GST_FLOW_OK. */
 void stab_push_frames (GstHarness * h, guint start, guint n);
 
-/* Pulls n frames, without waiting, that must be `start` and following, and nothing more be there. */
+/* Pulls n frames without waiting. They must be frame `start` and those after it, and no other frame may be there. */
 void stab_pull_frames (GstHarness * h, guint start, guint n);
 
-/* The stream's position as the element tells it downstream. */
+/* The position that the element answers to a query from downstream. */
 GstClockTime stab_position (GstHarness * h);
 
-/* What has come out since `stab_record_new`, in order: "f3 " for frame 3, the type's name for an event. */
+/* A record of what comes out from now on, in order: "f3 " for frame 3, the name of its type for an event. */
 GString *stab_record_new (GstHarness * h);
 
 G_END_DECLS

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Pictures with something to follow: cells of noise that pan and jump; and the library itself, as the measure of what
- * the element makes of them. */
+/* Frames with texture that can be tracked: cells of noise that pan and jump. The library itself processes the same
+ * frames as the reference for the element. */
 #ifndef STAB_NOISE_H
 #define STAB_NOISE_H
 
@@ -20,17 +20,17 @@ void stab_noise_fill (guint8 * pixels, guint index);
 /* Frame `index` as a buffer, at index * FRAME_DURATION. */
 GstBuffer *stab_noise_new (guint index);
 
-/* The library for such frames, with this window and the defaults. */
+/* A config of the library for such frames, with this window and the defaults. */
 void stab_noise_config (L1L2StabConfig * config, gint window);
 
-/* What the library tells of the first n frames. */
+/* What the library reports of the first n frames. */
 void stab_noise_infos (gint window, guint n, L1L2StabInfo * infos);
 
-/* The element playing, with this window, and such frames coming. */
+/* A harness around the element with this window, playing, with the caps of such frames. */
 GstHarness *stab_noise_harness_new (gint window);
 void stab_noise_push (GstHarness * h, guint start, guint n);
 
-/* The nine doubles of a field. */
+/* The matrix in a field: nine doubles. */
 void stab_get_matrix (const GstStructure * structure, const gchar * field,
     gdouble matrix[9]);
 

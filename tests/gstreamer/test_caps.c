@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Which video is taken, and as what it comes out. */
+/* Negotiation: which video is accepted, and with which caps it comes out. */
 #include "stabharness.h"
 
 #define WINDOW 4
@@ -31,7 +31,7 @@ caps_text (const gchar * format, gint width, gint height)
       "framerate=25/1", format, width, height);
 }
 
-GST_START_TEST (every_format_comes_out_as_it_went_in_at_odd_sizes_too)
+GST_START_TEST (every_format_passes_unchanged_at_even_and_odd_sizes)
 {
   guint i;
 
@@ -49,7 +49,7 @@ GST_START_TEST (every_format_comes_out_as_it_went_in_at_odd_sizes_too)
 
 GST_END_TEST;
 
-GST_START_TEST (a_very_wide_frame_is_taken)
+GST_START_TEST (a_very_wide_frame_is_accepted)
 {
   GstHarness *h = stab_harness_new ("video/x-raw, format=I420, width=8192, "
       "height=64, framerate=25/1", "window", WINDOW, NULL);
@@ -72,7 +72,7 @@ is_accepted (GstHarness * h, const gchar * text)
   return ret;
 }
 
-GST_START_TEST (only_progressive_mono_linear_video_of_usable_size_is_taken)
+GST_START_TEST (only_progressive_mono_linear_video_of_usable_size_is_accepted)
 {
   GstHarness *h = stab_harness_new (NULL, "window", WINDOW, NULL);
 
@@ -107,7 +107,7 @@ GST_START_TEST (only_progressive_mono_linear_video_of_usable_size_is_taken)
 
 GST_END_TEST;
 
-GST_START_TEST (no_memory_but_the_systems_is_offered)
+GST_START_TEST (only_system_memory_is_offered)
 {
   GstHarness *h = stab_harness_new (NULL, "window", WINDOW, NULL);
   GList *item = gst_element_class_get_pad_template_list
@@ -203,7 +203,7 @@ GST_START_TEST (output_size_crop_gives_the_crop_windows_size_in_even_numbers)
 
 GST_END_TEST;
 
-GST_START_TEST (upstream_is_offered_what_downstream_takes)
+GST_START_TEST (upstream_is_offered_what_downstream_accepts)
 {
   GstHarness *h = stab_harness_new (NULL, "window", WINDOW, NULL);
   GstCaps *caps;
@@ -257,18 +257,18 @@ caps_suite (void)
 
   suite_add_tcase (s, tc);
   tcase_add_loop_test (tc,
-      every_format_comes_out_as_it_went_in_at_odd_sizes_too, 0,
+      every_format_passes_unchanged_at_even_and_odd_sizes, 0,
       G_N_ELEMENTS (formats));
-  tcase_add_test (tc, a_very_wide_frame_is_taken);
+  tcase_add_test (tc, a_very_wide_frame_is_accepted);
   tcase_add_test (tc,
-      only_progressive_mono_linear_video_of_usable_size_is_taken);
-  tcase_add_test (tc, no_memory_but_the_systems_is_offered);
+      only_progressive_mono_linear_video_of_usable_size_is_accepted);
+  tcase_add_test (tc, only_system_memory_is_offered);
   tcase_add_loop_test (tc, all_fields_of_the_caps_are_kept, 0,
       G_N_ELEMENTS (kept));
   tcase_add_loop_test (tc,
       output_size_crop_gives_the_crop_windows_size_in_even_numbers, 0,
       G_N_ELEMENTS (crops));
-  tcase_add_test (tc, upstream_is_offered_what_downstream_takes);
+  tcase_add_test (tc, upstream_is_offered_what_downstream_accepts);
   tcase_add_test (tc, with_output_size_crop_upstream_may_choose_any_size);
   return s;
 }

@@ -54,7 +54,7 @@ run_to_end (GstElement * pipeline, const gchar * what)
   gst_element_set_state (pipeline, GST_STATE_NULL);
 }
 
-/* What a fakesink at the end of the pipeline sees. */
+/* What a fakesink at the end of the pipeline gets. */
 static Frames
 frames_at_the_end (const gchar * path, const gchar * elements)
 {
@@ -75,7 +75,7 @@ frames_at_the_end (const gchar * path, const gchar * elements)
   return frames;
 }
 
-/* What a player sees of the file that the elements make: it is muxed, and
+/* What a player gets from the file that the pipeline writes: it is muxed, and
  * decoded again. */
 static Frames
 frames_of_file (const gchar * path, const gchar * elements)
@@ -129,8 +129,8 @@ GST_START_TEST (every_frame_comes_out_with_its_timestamp)
 
 GST_END_TEST;
 
-/* Against the same file made without the element: where encoder and muxer
- * lose something of an odd clip themselves, that is theirs. */
+/* Compares with the same file made without the element, because encoder and
+ * muxer lose something of an unusual clip themselves. */
 GST_START_TEST (the_readmes_pipeline_makes_a_file_that_plays_like_its_input)
 {
   const gchar *in = g_ptr_array_index (clips, __i__);
@@ -200,7 +200,7 @@ stabilizer_for (const GstVideoInfo * video)
   cfg.format = L1L2STAB_FORMAT_GRAY8;
   cfg.width = video->width;
   cfg.height = video->height;
-  /* Some files say 90000: the clock of their timestamps. */
+  /* Some files give the rate of their timestamps, 90000, as the frame rate. */
   cfg.frame_rate = (gdouble) video->fps_n / video->fps_d;
   if (cfg.frame_rate > 1000.0)
     cfg.frame_rate = 0.0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* lambda and crop-ratio while the stream runs: set by the application, or controlled by stream time. The measure is
- * the library, which is told the same values before the same frames. */
+/* lambda and crop-ratio during playback, set by the application or controlled by stream time. The reference is the
+ * library with the same values for the same frames. */
 #include <gst/controller/gstdirectcontrolbinding.h>
 #include <gst/controller/gstinterpolationcontrolsource.h>
 
@@ -10,7 +10,7 @@
 #define N_FRAMES 24
 #define CHANGED 12              /* the first frame that comes in after a change */
 
-/* What each frame is to be given. */
+/* The values of each frame. */
 typedef struct
 {
   gdouble lambda[N_FRAMES], crop_ratio[N_FRAMES];
@@ -39,7 +39,7 @@ pull_from_library (L1L2Stab * stab, gint width, gint height, GPtrArray * out)
   g_ptr_array_add (out, g_bytes_new_take (pixels, width * height));
 }
 
-/* The pictures that the library makes, GBytes. */
+/* The frames that the library renders, as GBytes. */
 static GPtrArray *
 run_library (const Knobs * knobs, L1L2StabOutputSize size)
 {
@@ -88,7 +88,8 @@ noise_harness_new (L1L2StabOutputSize size)
   return h;
 }
 
-/* The element's pictures, GBytes. The frames start at `base`; knobs, if there are any, are set before each frame. */
+/* The frames that the element renders, as GBytes. Their timestamps start at `base`. Before each frame its values are
+ * set, if there are any. */
 static GPtrArray *
 run_element (GstHarness * h, const Knobs * knobs, GstClockTime base)
 {
@@ -118,7 +119,7 @@ run_element (GstHarness * h, const Knobs * knobs, GstClockTime base)
   return out;
 }
 
-/* The first frame in which they differ; N_FRAMES: none. */
+/* The first frame in which the two runs differ; N_FRAMES: none. */
 static guint
 first_difference (GPtrArray * a, GPtrArray * b)
 {
@@ -141,7 +142,7 @@ static const struct
   {2, 0.99, L1L2STAB_OUTPUT_SIZE_CROP},
 };
 
-GST_START_TEST (a_change_while_playing_is_for_the_frames_that_come_in_later)
+GST_START_TEST (a_change_while_playing_applies_to_frames_that_come_in_later)
 {
   const L1L2StabOutputSize size = changes[__i__].size;
   GstHarness *plain_h = noise_harness_new (size);
@@ -155,7 +156,7 @@ GST_START_TEST (a_change_while_playing_is_for_the_frames_that_come_in_later)
   changed = run_element (changed_h, &knobs, 0);
   expected = run_library (&knobs, size);
 
-  /* Of the frames that are held, those that share a window with a later one may move already. */
+  /* Held frames that share a window with a later frame can differ too. */
   changed_at = first_difference (changed, plain);
   fail_unless (changed_at > CHANGED - WINDOW && changed_at <= CHANGED + 1,
       "frame %u is the first to differ", changed_at);
@@ -184,7 +185,7 @@ slope_new (void)
   return source;
 }
 
-/* The frames' own timestamps are far behind the slope; by stream time they start with it. */
+/* The timestamps of the frames are far behind the slope, but their stream times start with it. */
 static GPtrArray *
 run_controlled (GstControlSource * source, L1L2StabOutputSize size)
 {
@@ -301,7 +302,7 @@ GST_START_TEST (threads_that_change_both_lose_no_frame)
   threads[1] = stress (h, "lambda", 2);
   threads[2] = stress (h, "crop-ratio", 0.5);
   threads[3] = stress (h, "crop-ratio", 0.99);
-  /* New caps are the moment at which a size could change between two looks at it. */
+  /* With new caps the size could change between the negotiation and the opening of the library. */
   for (i = 0; i < 400; i++) {
     if (i % 10 == 0)
       gst_harness_set_src_caps_str (h, caps[i / 10 % 2]);
@@ -324,7 +325,7 @@ control_suite (void)
 
   suite_add_tcase (s, tc);
   tcase_add_loop_test (tc,
-      a_change_while_playing_is_for_the_frames_that_come_in_later, 0,
+      a_change_while_playing_applies_to_frames_that_come_in_later, 0,
       G_N_ELEMENTS (changes));
   tcase_add_loop_test (tc, a_controller_drives_crop_ratio_by_stream_time,
       L1L2STAB_OUTPUT_SIZE_INPUT, L1L2STAB_OUTPUT_SIZE_CROP + 1);

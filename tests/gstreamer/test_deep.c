@@ -6,7 +6,7 @@
 
 #define N_FRAMES 20
 
-/* Where plugins of other packages are missing the test is skipped (exit status 77). */
+/* If plugins of other packages are missing, the test is skipped (exit status 77). */
 static const gchar *const needed[] = {
   "x265enc", "h265parse", "avdec_h265", "matroskamux", "matroskademux",
   "capssetter", NULL
@@ -27,7 +27,7 @@ count_buffer (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
   return GST_PAD_PROBE_OK;
 }
 
-/* Runs to the end. The caps that left the element called "look", and how many frames did. */
+/* Runs to the end. Returns the caps that left the element named "look", and the number of frames that did. */
 static GstCaps *
 run (const gchar * description, guint * n_frames)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What must not overtake the held frames pushes them out; a flush drops them. */
+/* Draining: events that must not overtake the held frames push them out. A flush drops them. */
 #include "stabharness.h"
 
 #define WINDOW 8
@@ -40,7 +40,7 @@ draining_event (gint which)
   }
 }
 
-GST_START_TEST (held_frames_go_before_an_event_that_ends_their_time)
+GST_START_TEST (held_frames_leave_before_an_event_that_ends_the_path)
 {
   GstHarness *h = harness_with_frames (5);
   GString *out = stab_record_new (h);
@@ -141,7 +141,7 @@ pull_discont (GstHarness * h, guint n, guint which)
   }
 }
 
-GST_START_TEST (a_discontinuity_lets_the_old_frames_out_and_marks_the_new_one)
+GST_START_TEST (a_discontinuity_drains_the_old_frames_and_marks_the_new_one)
 {
   GstHarness *h = harness_with_frames (5);
   GstBuffer *buffer = stab_frame_new (h, 5);
@@ -157,7 +157,7 @@ GST_START_TEST (a_discontinuity_lets_the_old_frames_out_and_marks_the_new_one)
 
 GST_END_TEST;
 
-GST_START_TEST (the_first_frames_discontinuity_is_no_reason_to_mark_others)
+GST_START_TEST (a_discontinuity_of_the_first_frame_marks_no_other)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GstBuffer *buffer = stab_frame_new (h, 0);
@@ -233,7 +233,7 @@ GST_START_TEST (a_drain_query_gives_upstream_its_frames_back)
 
 GST_END_TEST;
 
-GST_START_TEST (a_flush_drops_what_is_held_and_begins_anew)
+GST_START_TEST (a_flush_drops_the_held_frames_and_starts_a_new_path)
 {
   GstHarness *h = harness_with_frames (5);
   GString *out = stab_record_new (h);
@@ -265,7 +265,7 @@ push_a_frame (gpointer user_data)
   return GINT_TO_POINTER (gst_harness_push (h, stab_frame_new (h, WINDOW - 1)));
 }
 
-GST_START_TEST (a_flush_unblocks_a_frame_on_its_way)
+GST_START_TEST (a_flush_unblocks_a_push)
 {
   GstHarness *h = harness_with_frames (WINDOW - 1);
   gint n_blocked = 0;
@@ -285,8 +285,8 @@ GST_START_TEST (a_flush_unblocks_a_frame_on_its_way)
 
 GST_END_TEST;
 
-/* The clock's task holds the stream's lock then. */
-GST_START_TEST (a_flush_unblocks_a_frame_that_the_clock_let_go)
+/* Here the task of the timer holds the stream lock. */
+GST_START_TEST (a_flush_unblocks_a_push_that_the_timer_made)
 {
   GstHarness *h = harness_with_frames (3);
   GString *out;
@@ -312,7 +312,7 @@ GST_START_TEST (a_flush_unblocks_a_frame_that_the_clock_let_go)
 GST_END_TEST;
 
 /* identity lets one buffer pass and then fails. */
-GST_START_TEST (a_drain_obeys_the_flow_downstream)
+GST_START_TEST (a_drain_stops_when_downstream_refuses_a_frame)
 {
   GstHarness *h =
       gst_harness_new_parse ("l1l2stab window=8 ! identity error-after=2");
@@ -337,22 +337,22 @@ drain_suite (void)
 
   suite_add_tcase (s, tc);
   tcase_add_loop_test (tc,
-      held_frames_go_before_an_event_that_ends_their_time, 0, 4);
+      held_frames_leave_before_an_event_that_ends_the_path, 0, 4);
   tcase_add_test (tc, a_new_window_begins_after_a_new_segment);
   tcase_add_test (tc, changed_caps_drain_with_the_old_caps);
   tcase_add_test (tc, the_same_caps_again_do_not_drain);
   tcase_add_test (tc, a_reconfiguration_that_changes_nothing_does_not_drain);
   tcase_add_test (tc,
-      a_discontinuity_lets_the_old_frames_out_and_marks_the_new_one);
+      a_discontinuity_drains_the_old_frames_and_marks_the_new_one);
   tcase_add_test (tc,
-      the_first_frames_discontinuity_is_no_reason_to_mark_others);
+      a_discontinuity_of_the_first_frame_marks_no_other);
   tcase_add_test (tc, a_drain_before_the_window_is_full_marks_no_other_frame);
   tcase_add_test (tc, the_position_is_that_of_the_last_frame_out);
   tcase_add_test (tc, a_drain_query_gives_upstream_its_frames_back);
-  tcase_add_test (tc, a_flush_drops_what_is_held_and_begins_anew);
-  tcase_add_test (tc, a_flush_unblocks_a_frame_on_its_way);
-  tcase_add_test (tc, a_flush_unblocks_a_frame_that_the_clock_let_go);
-  tcase_add_test (tc, a_drain_obeys_the_flow_downstream);
+  tcase_add_test (tc, a_flush_drops_the_held_frames_and_starts_a_new_path);
+  tcase_add_test (tc, a_flush_unblocks_a_push);
+  tcase_add_test (tc, a_flush_unblocks_a_push_that_the_timer_made);
+  tcase_add_test (tc, a_drain_stops_when_downstream_refuses_a_frame);
   return s;
 }
 

@@ -16,7 +16,7 @@ custom_event (GstEventType type)
   return gst_event_new_custom (type, gst_structure_new_empty ("test"));
 }
 
-/* `n` frames are held; what comes out from now on is in *out. */
+/* A harness in which `n` frames are held. *out: a record of what comes out from now on. */
 static GstHarness *
 recorded_harness_new (guint n, GString ** out)
 {
@@ -85,7 +85,7 @@ GST_START_TEST (a_gap_stays_in_its_place_and_ends_no_window)
 
 GST_END_TEST;
 
-GST_START_TEST (in_a_long_gap_the_frames_before_it_go)
+GST_START_TEST (in_a_long_gap_the_frames_before_it_leave)
 {
   GString *out;
   GstHarness *h = recorded_harness_new (3, &out);
@@ -101,8 +101,8 @@ GST_START_TEST (in_a_long_gap_the_frames_before_it_go)
 
 GST_END_TEST;
 
-/* As players tell the picture that it is over while the sound goes on: the end of the stream comes later, and not
- * before the sink has a frame. */
+/* A player sends this event when the video ends before the audio. The end of the stream comes later, and not before the
+ * sink has a frame. */
 GST_START_TEST (at_the_end_of_its_group_a_stream_is_drained)
 {
   GString *out;
@@ -115,7 +115,7 @@ GST_START_TEST (at_the_end_of_its_group_a_stream_is_drained)
 
 GST_END_TEST;
 
-GST_START_TEST (a_gap_of_unknown_length_holds_no_frame)
+GST_START_TEST (a_gap_of_unknown_length_drains)
 {
   GString *out;
   GstHarness *h = recorded_harness_new (3, &out);
@@ -128,7 +128,7 @@ GST_START_TEST (a_gap_of_unknown_length_holds_no_frame)
 
 GST_END_TEST;
 
-GST_START_TEST (an_event_out_of_band_overtakes_the_frames)
+GST_START_TEST (an_out_of_band_event_overtakes_the_frames)
 {
   GString *out;
   GstHarness *h = recorded_harness_new (3, &out);
@@ -160,7 +160,7 @@ GST_START_TEST (a_tag_outlives_a_flush_and_a_custom_event_does_not)
 
 GST_END_TEST;
 
-GST_START_TEST (quality_of_service_goes_upstream_and_drops_no_frame)
+GST_START_TEST (a_qos_event_goes_upstream_and_drops_no_frame)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GstEvent *event;
@@ -193,12 +193,12 @@ events_suite (void)
   tcase_add_test (tc, an_event_after_the_last_frame_goes_before_the_end);
   tcase_add_test (tc, an_event_with_no_frame_before_it_passes_at_once);
   tcase_add_test (tc, a_gap_stays_in_its_place_and_ends_no_window);
-  tcase_add_test (tc, in_a_long_gap_the_frames_before_it_go);
-  tcase_add_test (tc, a_gap_of_unknown_length_holds_no_frame);
+  tcase_add_test (tc, in_a_long_gap_the_frames_before_it_leave);
+  tcase_add_test (tc, a_gap_of_unknown_length_drains);
   tcase_add_test (tc, at_the_end_of_its_group_a_stream_is_drained);
-  tcase_add_test (tc, an_event_out_of_band_overtakes_the_frames);
+  tcase_add_test (tc, an_out_of_band_event_overtakes_the_frames);
   tcase_add_test (tc, a_tag_outlives_a_flush_and_a_custom_event_does_not);
-  tcase_add_test (tc, quality_of_service_goes_upstream_and_drops_no_frame);
+  tcase_add_test (tc, a_qos_event_goes_upstream_and_drops_no_frame);
   return s;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Of a source that is not live, timestamps alone tell how long a frame has been held. */
+/* If the source is not live, only timestamps decide how long a frame has been held. */
 #include <gst/check/gsttestclock.h>
 
 #include "stabharness.h"
@@ -25,7 +25,7 @@ file_harness_new (void)
   return h;
 }
 
-GST_START_TEST (the_clock_pushes_nothing_of_a_source_that_is_not_live)
+GST_START_TEST (the_timer_pushes_no_frame_of_a_source_that_is_not_live)
 {
   GstHarness *h = file_harness_new ();
   GstTestClock *clock = gst_harness_get_testclock (h);
@@ -41,7 +41,8 @@ GST_START_TEST (the_clock_pushes_nothing_of_a_source_that_is_not_live)
 
 GST_END_TEST;
 
-/* The next frame's index after 0, 1, 2, and how many of these cannot wait then: those 8 and more frames before it. */
+/* The index of the next frame after 0, 1, 2, and how many of these are then overdue: those 8 or more frames before
+ * it. */
 static const struct
 {
   guint index, n_out;
@@ -49,7 +50,7 @@ static const struct
   {7, 0}, {8, 1}, {9, 2}, {10, 3}, {500, 3}
 };
 
-GST_START_TEST (a_jump_of_the_timestamps_lets_the_frames_before_it_go)
+GST_START_TEST (a_jump_of_the_timestamps_releases_the_frames_before_it)
 {
   GstHarness *h = file_harness_new ();
 
@@ -61,7 +62,7 @@ GST_START_TEST (a_jump_of_the_timestamps_lets_the_frames_before_it_go)
 
 GST_END_TEST;
 
-GST_START_TEST (frames_of_a_varying_rate_keep_their_times_and_wait_no_longer)
+GST_START_TEST (frames_of_a_variable_rate_keep_their_times_and_wait_no_longer)
 {
   const guint steps[] = { 40, 120, 40, 7, 33, 400, 40, 61, 90, 25 };
   GstHarness *h = file_harness_new ();
@@ -98,12 +99,12 @@ file_suite (void)
   TCase *tc = tcase_create ("file");
 
   suite_add_tcase (s, tc);
-  tcase_add_test (tc, the_clock_pushes_nothing_of_a_source_that_is_not_live);
+  tcase_add_test (tc, the_timer_pushes_no_frame_of_a_source_that_is_not_live);
   tcase_add_loop_test (tc,
-      a_jump_of_the_timestamps_lets_the_frames_before_it_go, 0,
+      a_jump_of_the_timestamps_releases_the_frames_before_it, 0,
       G_N_ELEMENTS (jumps));
   tcase_add_test (tc,
-      frames_of_a_varying_rate_keep_their_times_and_wait_no_longer);
+      frames_of_a_variable_rate_keep_their_times_and_wait_no_longer);
   return s;
 }
 

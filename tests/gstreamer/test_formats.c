@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Every format's planes against a warp in floating point that knows the format from GStreamer's description alone. The
- * map is the one that the library tells of the same frames. */
+/* The planes of every format, compared with a warp in floating point that knows each format by GStreamer's description.
+ * It uses the maps that the library reports of the same frames. */
 #include <math.h>
 
 #include <l1l2stab/l1l2stab.h>
@@ -117,7 +117,7 @@ draw_component (GstVideoFrame * frame, guint c, guint index)
   }
 }
 
-/* Rows are padded, and planes lie apart: the meta says where. */
+/* A frame with padded rows and separate planes, described by a video meta. */
 static GstBuffer *
 frame_new (const GstVideoInfo * info, guint index)
 {
@@ -147,7 +147,7 @@ frame_new (const GstVideoInfo * info, guint index)
   return buffer;
 }
 
-/* The map of the frame that is looked at, output pixel to source pixel. */
+/* The map of the frame that is compared, from output pixels to source pixels. */
 static void
 ask_the_library (const GstVideoInfo * info, L1L2StabFormat format,
     L1L2StabChromaSite site, GstBuffer * frames[N_FRAMES], gdouble map[9])
@@ -201,7 +201,7 @@ weigh (gdouble x)
       : a * t * t * t - 5 * a * t * t + 8 * a * t - 4 * a;
 }
 
-/* A component between its samples; its edge is repeated. */
+/* A component interpolated between its samples. Outside the frame its edge is repeated. */
 static gdouble
 interpolate (const GstVideoFrame * frame, guint c, gdouble x, gdouble y)
 {
@@ -220,7 +220,7 @@ interpolate (const GstVideoFrame * frame, guint c, gdouble x, gdouble y)
   return CLAMP (sum, 0, max_level (frame, c));
 }
 
-/* Where a component's samples lie in the frame, along one axis. */
+/* The positions of a component's samples in the frame, along one axis. */
 typedef struct
 {
   gdouble first, step;          /* pixels */
@@ -256,7 +256,7 @@ reference (const GstVideoFrame * in, guint c, guint site, const gdouble map[9],
       (map[3] * x + map[4] * y + map[5] + half_height - ay.first) / ay.step);
 }
 
-/* The error's own power, and by least squares the displacement (samples) that would explain it best. */
+/* The power of the error, and the displacement (samples) that explains it best by least squares. */
 static void
 compare_component (const GstVideoFrame * in, const GstVideoFrame * out, guint c,
     guint site, const gdouble map[9])

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Frames: one out for one in, in order, each with what belongs to it. */
+/* Frames: one comes out for each that goes in, in order, with its own metadata. */
 #include "stabharness.h"
 
 #define WINDOW 8
@@ -96,7 +96,7 @@ GST_START_TEST (frames_without_timestamps_come_out_without)
 
 GST_END_TEST;
 
-/* In a reverse playback timestamps fall. */
+/* In reverse playback timestamps fall. */
 GST_START_TEST (the_order_is_that_of_arrival_whatever_the_timestamps)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
@@ -117,7 +117,7 @@ GST_START_TEST (the_order_is_that_of_arrival_whatever_the_timestamps)
 
 GST_END_TEST;
 
-GST_START_TEST (the_input_is_only_read_and_given_back)
+GST_START_TEST (the_input_is_not_changed_and_is_released)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GstBuffer *kept[2 * WINDOW];
@@ -182,7 +182,7 @@ frames_suite (void)
   tcase_add_test (tc, flags_and_offsets_stay_with_their_frame);
   tcase_add_test (tc, frames_without_timestamps_come_out_without);
   tcase_add_test (tc, the_order_is_that_of_arrival_whatever_the_timestamps);
-  tcase_add_test (tc, the_input_is_only_read_and_given_back);
+  tcase_add_test (tc, the_input_is_not_changed_and_is_released);
   tcase_add_test (tc, a_buffer_too_small_for_its_caps_is_an_error);
   return s;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The latency is the window, in frames, on top of upstream's. */
+/* The latency: the window in frames plus the latency of upstream. */
 #include "stabharness.h"
 
 typedef struct
@@ -76,7 +76,7 @@ GST_START_TEST (the_latency_is_the_window_in_frames)
 
 GST_END_TEST;
 
-GST_START_TEST (upstreams_least_and_most_are_both_raised)
+GST_START_TEST (the_minimum_and_the_maximum_of_upstream_are_both_raised)
 {
   const Latency live = { TRUE, 20 * GST_MSECOND, 300 * GST_MSECOND };
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", 10, NULL);
@@ -108,7 +108,7 @@ GST_START_TEST (a_latency_that_would_overflow_is_the_largest_one)
 
 GST_END_TEST;
 
-GST_START_TEST (without_an_answer_upstream_there_is_none)
+GST_START_TEST (without_an_answer_from_upstream_the_query_fails)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", 10, NULL);
   Latency latency;
@@ -186,9 +186,9 @@ latency_suite (void)
   suite_add_tcase (s, tc);
   tcase_add_loop_test (tc, the_latency_is_the_window_in_frames, 0,
       G_N_ELEMENTS (cases));
-  tcase_add_test (tc, upstreams_least_and_most_are_both_raised);
+  tcase_add_test (tc, the_minimum_and_the_maximum_of_upstream_are_both_raised);
   tcase_add_test (tc, a_latency_that_would_overflow_is_the_largest_one);
-  tcase_add_test (tc, without_an_answer_upstream_there_is_none);
+  tcase_add_test (tc, without_an_answer_from_upstream_the_query_fails);
   tcase_add_test (tc, before_the_caps_are_known_25_frames_a_second_are_assumed);
   tcase_add_test (tc,
       a_message_is_posted_when_the_latency_changes_and_only_then);

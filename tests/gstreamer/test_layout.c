@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Buffers: any layout of theirs is honoured. */
+/* Buffers with any layout of planes and rows. */
 #include "stabharness.h"
 
 #define WINDOW 12
@@ -7,7 +7,7 @@
   "video/x-raw, format=" format ", width=35, height=21, framerate=25/1"
 #define PADDING 0xee
 
-/* A frame whose rows, planes and start are all farther apart than they need be. */
+/* A frame with padding before its first byte, between its rows and between its planes. */
 static GstBuffer *
 padded_frame_new (GstHarness * h, guint index)
 {
@@ -54,7 +54,7 @@ static const gchar *padded_caps[] = {
   ODD_CAPS ("RGBA"), ODD_CAPS ("GRAY8")
 };
 
-GST_START_TEST (padded_rows_and_moved_planes_are_honoured)
+GST_START_TEST (padded_rows_and_moved_planes_are_honored)
 {
   GstHarness *h = stab_harness_new (padded_caps[__i__], "window", WINDOW, NULL);
   guint i;
@@ -69,7 +69,7 @@ GST_START_TEST (padded_rows_and_moved_planes_are_honoured)
 
 GST_END_TEST;
 
-GST_START_TEST (planes_may_lie_in_different_memories)
+GST_START_TEST (planes_can_be_in_different_memories)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   guint i;
@@ -156,9 +156,9 @@ layout_suite (void)
   TCase *tc = tcase_create ("layout");
 
   suite_add_tcase (s, tc);
-  tcase_add_loop_test (tc, padded_rows_and_moved_planes_are_honoured, 0,
+  tcase_add_loop_test (tc, padded_rows_and_moved_planes_are_honored, 0,
       G_N_ELEMENTS (padded_caps));
-  tcase_add_test (tc, planes_may_lie_in_different_memories);
+  tcase_add_test (tc, planes_can_be_in_different_memories);
   tcase_add_test (tc, downstreams_padded_buffers_are_filled);
   return s;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What an application does to a stream that runs: bypass, a pointer over the picture, lateness that is reported. */
+/* What an application does during playback: bypass, navigation events, and QoS events. */
 #include <gst/controller/gstdirectcontrolbinding.h>
 #include <gst/controller/gstinterpolationcontrolsource.h>
 #include <math.h>
@@ -25,7 +25,7 @@ is_whole (GstBuffer * buffer, guint index)
   return whole;
 }
 
-/* The frames that come out are whole from frame `start` on, but for the last `rest`. */
+/* Fails unless the output frames are whole from frame `start` on, except for the last `rest`. */
 static void
 assert_whole (GstHarness * h, guint start, guint rest)
 {
@@ -151,7 +151,7 @@ get_pointer (GstEvent * event, gdouble * x, gdouble * y)
           "pointer_x", G_TYPE_DOUBLE, x, "pointer_y", G_TYPE_DOUBLE, y, NULL));
 }
 
-/* What arrives upstream of an event that is sent from downstream. */
+/* Sends an event upstream and returns the one that arrives there. */
 static GstEvent *
 send_up (GstHarness * h, GstEvent * event)
 {
@@ -229,7 +229,7 @@ GST_START_TEST (lateness_drops_no_input_whatever_qos_says)
   }
   gst_harness_push_event (h, gst_event_new_eos ());
   fail_unless_equals_int (gst_harness_buffers_received (h), 3 * WINDOW);
-  /* Upstream is told, and may do less. */
+  /* The event goes upstream, where less work can be done. */
   while (!told) {
     GstEvent *event = gst_harness_try_pull_upstream_event (h);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Where in the source a point of the picture comes from: the meta that tells it. */
+/* The meta that maps a point of the picture to the source frame. */
 #include <math.h>
 
 #include "stabnoise.h"
@@ -25,7 +25,7 @@ get_meta (GstBuffer * buffer)
   return meta ? gst_custom_meta_get_structure (meta) : NULL;
 }
 
-/* A white square of 12 pixels on a dimmed background, off the middle. */
+/* A white square of 12 pixels on a dark background, away from the middle. */
 static GstBuffer *
 new_target (guint index, gdouble * x, gdouble * y)
 {
@@ -45,7 +45,7 @@ new_target (guint index, gdouble * x, gdouble * y)
   return buffer;
 }
 
-/* A detector: the centre of gravity of what is white. */
+/* A detector: the center of gravity of the white pixels. */
 static void
 find_target (GstBuffer * buffer, gdouble * x, gdouble * y)
 {
@@ -66,7 +66,7 @@ find_target (GstBuffer * buffer, gdouble * x, gdouble * y)
   *y = sum_y / sum;
 }
 
-GST_START_TEST (what_is_found_in_the_picture_is_mapped_back_to_the_source)
+GST_START_TEST (an_object_in_the_picture_is_mapped_back_to_the_source)
 {
   GstHarness *h = stab_noise_harness_new (WINDOW);
   gdouble true_x[N_FRAMES], true_y[N_FRAMES], moved = 0;
@@ -100,7 +100,7 @@ GST_START_TEST (what_is_found_in_the_picture_is_mapped_back_to_the_source)
 
 GST_END_TEST;
 
-GST_START_TEST (the_meta_has_sizes_and_a_number_and_goes_with_a_copy)
+GST_START_TEST (the_meta_has_sizes_and_a_number_and_is_copied)
 {
   GstHarness *h = stab_harness_new (NULL, "window", WINDOW, NULL);
   guint i;
@@ -133,7 +133,7 @@ GST_START_TEST (the_meta_has_sizes_and_a_number_and_goes_with_a_copy)
 
 GST_END_TEST;
 
-/* The first frame out of a bin with these elements after ours. */
+/* The first frame that comes out of a bin with these elements after l1l2stab. */
 static GstBuffer *
 first_through (const gchar * after)
 {
@@ -193,8 +193,8 @@ map_suite (void)
 
   suite_add_tcase (s, tc);
   tcase_add_test (tc,
-      what_is_found_in_the_picture_is_mapped_back_to_the_source);
-  tcase_add_test (tc, the_meta_has_sizes_and_a_number_and_goes_with_a_copy);
+      an_object_in_the_picture_is_mapped_back_to_the_source);
+  tcase_add_test (tc, the_meta_has_sizes_and_a_number_and_is_copied);
   tcase_add_test (tc,
       a_scaler_downstream_adjusts_the_meta_and_a_cropper_drops_it);
   return s;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Upstream is never starved by a window that holds its buffers. */
+/* Allocation: upstream never runs out of buffers because the window holds them. */
 #include <gst/allocators/gstdmabuf.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -50,7 +50,7 @@ pool_new (guint most)
   return pool;
 }
 
-/* A pool that has run out fails here instead of blocking for ever. */
+/* An empty pool fails here instead of blocking forever. */
 static GstBuffer *
 frame_from_pool (GstHarness * h, GstBufferPool * pool, guint index)
 {
@@ -76,7 +76,7 @@ as_it_is (GstBuffer * buffer)
   return buffer;
 }
 
-/* As a tee and an element that writes metas leave it: another buffer, the pool's memory. */
+/* Another buffer with the memory of the pool, as after a tee and an element that adds metas. */
 static GstBuffer *
 shallow_copy (GstBuffer * buffer)
 {
@@ -148,7 +148,7 @@ GST_START_TEST (buffers_of_a_pool_without_a_limit_are_held_and_not_copied)
 
 GST_END_TEST;
 
-GST_START_TEST (a_devices_memory_is_given_back_at_once)
+GST_START_TEST (memory_of_a_device_is_released_at_once)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GstAllocator *allocator = gst_dmabuf_allocator_new ();
@@ -172,8 +172,8 @@ GST_START_TEST (a_devices_memory_is_given_back_at_once)
 
 GST_END_TEST;
 
-/* As shmsrc lends it: wrapped, and not to be written. */
-GST_START_TEST (memory_that_is_lent_is_given_back_at_once)
+/* Wrapped read-only memory, as from shmsrc. */
+GST_START_TEST (memory_that_is_lent_is_released_at_once)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   const gsize size = 64 * 48 * 3 / 2;
@@ -197,7 +197,7 @@ GST_START_TEST (memory_that_is_lent_is_given_back_at_once)
 
 GST_END_TEST;
 
-/* Whoever takes our pool can fill a window from it, and more. */
+/* Upstream can fill a window from the offered pool, and more. */
 GST_START_TEST (the_offered_pool_holds_a_window_of_frames)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
@@ -217,7 +217,7 @@ GST_START_TEST (the_offered_pool_holds_a_window_of_frames)
       kept = gst_buffer_ref (buffer);
     fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
   }
-  /* Held, and not a copy of them. */
+  /* The buffers are held, not copied. */
   fail_unless (GST_MINI_OBJECT_REFCOUNT_VALUE (kept) > 1);
   gst_buffer_unref (kept);
   for (; i < 3 * WINDOW; i++)
@@ -234,7 +234,7 @@ GST_START_TEST (the_offered_pool_holds_a_window_of_frames)
 
 GST_END_TEST;
 
-GST_START_TEST (a_question_for_a_pool_disturbs_no_frame)
+GST_START_TEST (an_allocation_query_disturbs_no_frame)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GstCaps *caps = gst_caps_from_string (SMALL_CAPS);
@@ -266,10 +266,10 @@ memory_suite (void)
       G_N_ELEMENTS (disguises));
   tcase_add_test (tc,
       buffers_of_a_pool_without_a_limit_are_held_and_not_copied);
-  tcase_add_test (tc, a_devices_memory_is_given_back_at_once);
-  tcase_add_test (tc, memory_that_is_lent_is_given_back_at_once);
+  tcase_add_test (tc, memory_of_a_device_is_released_at_once);
+  tcase_add_test (tc, memory_that_is_lent_is_released_at_once);
   tcase_add_test (tc, the_offered_pool_holds_a_window_of_frames);
-  tcase_add_test (tc, a_question_for_a_pool_disturbs_no_frame);
+  tcase_add_test (tc, an_allocation_query_disturbs_no_frame);
   return s;
 }
 

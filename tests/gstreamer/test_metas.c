@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a frame carries goes with it through the window, and what tells of a place moves with the picture. */
+/* Metas stay with their frame, and regions of interest move with the picture. */
 #include "stabharness.h"
 
 #define WINDOW 8
@@ -109,7 +109,7 @@ static const struct
   {"TestOfMemory", {GST_META_TAG_MEMORY_STR, NULL}, FALSE},
 };
 
-GST_START_TEST (a_meta_unknown_to_us_goes_as_its_tags_say)
+GST_START_TEST (an_unknown_meta_is_copied_as_its_tags_say)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   const gchar *name = customs[__i__].name;
@@ -141,7 +141,7 @@ GST_START_TEST (a_meta_unknown_to_us_goes_as_its_tags_say)
 
 GST_END_TEST;
 
-/* Nothing moves: the picture is zoomed about its centre, (32, 24), by 1 / 0.8. */
+/* Nothing moves: the picture is zoomed about its center, (32, 24), by 1 / 0.8. */
 static const struct
 {
   GstVideoRectangle in, out;
@@ -198,7 +198,7 @@ GST_END_TEST;
   "video/x-raw, format=GRAY8, width=160, height=120, framerate=25/1"
 #define SQUARE 30
 
-/* Blocks of different greys, and one white square, all moved by (dx, dy). */
+/* Blocks of different grays and one white square, all moved by (dx, dy). */
 static GstBuffer *
 scene_new (gint dx, gint dy)
 {
@@ -224,7 +224,7 @@ scene_new (gint dx, gint dy)
   return buffer;
 }
 
-/* The box around what is brighter than the ground. */
+/* The box around the pixels that are brighter than the background. */
 static GstVideoRectangle
 find_square (GstBuffer * buffer)
 {
@@ -277,7 +277,7 @@ GST_START_TEST (a_region_of_interest_stays_on_what_it_enclosed)
     spread = MAX (spread, ABS (seen.x - 54));
     gst_buffer_unref (buffer);
   }
-  /* A zoom about the centre alone would carry the shake of 5 px on. */
+  /* A zoom about the center alone would keep the shake of 5 px. */
   fail_unless (spread <= 2, "the picture still moves by %d px", spread);
   stab_harness_free (h);
 }
@@ -292,7 +292,7 @@ metas_suite (void)
 
   suite_add_tcase (s, tc);
   tcase_add_test (tc, metas_stay_with_their_frame);
-  tcase_add_loop_test (tc, a_meta_unknown_to_us_goes_as_its_tags_say, 0,
+  tcase_add_loop_test (tc, an_unknown_meta_is_copied_as_its_tags_say, 0,
       G_N_ELEMENTS (customs));
   tcase_add_loop_test (tc,
       a_region_of_interest_is_zoomed_with_the_picture_and_clipped, 0,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Motion files: what one run writes another reads, to the bit. */
+/* Motion files that one run writes and another reads: the output is the same to the bit. */
 #include "motion_fixture.h"
 
 /* No frame has the timestamp of the frame before it. */
@@ -104,7 +104,7 @@ GST_START_TEST (frames_that_share_a_timestamp_have_a_line_each)
 
 GST_END_TEST;
 
-GST_START_TEST (the_file_is_whole_when_the_stream_ends_and_reads_as_documented)
+GST_START_TEST (the_file_is_complete_when_the_stream_ends_and_is_as_documented)
 {
   GstHarness *h = harness_new (NULL, "a");
   gchar **lines, *text, *before;
@@ -138,7 +138,7 @@ GST_START_TEST (the_file_is_whole_when_the_stream_ends_and_reads_as_documented)
 
 GST_END_TEST;
 
-GST_START_TEST (what_is_played_again_is_written_once_and_a_flush_begins_anew)
+GST_START_TEST (frames_played_again_are_written_once_and_a_flush_empties_the_file)
 {
   GstHarness *h = harness_new (NULL, "a");
   GstSegment segment;
@@ -231,9 +231,9 @@ motion_suite (void)
       a_second_run_with_repeated_timestamps_gives_the_same_bytes);
   tcase_add_test (tc, frames_that_share_a_timestamp_have_a_line_each);
   tcase_add_test (tc,
-      the_file_is_whole_when_the_stream_ends_and_reads_as_documented);
+      the_file_is_complete_when_the_stream_ends_and_is_as_documented);
   tcase_add_test (tc,
-      what_is_played_again_is_written_once_and_a_flush_begins_anew);
+      frames_played_again_are_written_once_and_a_flush_empties_the_file);
   tcase_add_test (tc, frames_of_another_size_end_the_file_with_a_warning);
   tcase_add_test (tc, a_full_disk_is_an_error);
   return s;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Motion files that others wrote: how frames find their lines, and what is wrong with the file. */
+/* Motion files of other tools: how frames find their lines, and which faults of a file are reported. */
 #include "motion_fixture.h"
 
-/* A file of pans by 1, 2, 3, ... pixels; with the frames' times or without. */
+/* Writes a file with pans by 1, 2, 3, ... pixels, with the times of the frames or without. */
 static void
 write_pans (gboolean timed)
 {
@@ -23,7 +23,7 @@ write_pans (gboolean timed)
   g_string_free (text, TRUE);
 }
 
-/* The motion of the frame that a message tells of; FALSE: a path starts with it. */
+/* The motion in the next message. FALSE: its frame starts a path. */
 static gboolean
 next_motion (GstHarness * h, gdouble * x, gdouble * y)
 {
@@ -40,7 +40,7 @@ next_motion (GstHarness * h, gdouble * x, gdouble * y)
   return !starts;
 }
 
-GST_START_TEST (frames_that_are_left_out_or_run_backward_find_their_motion)
+GST_START_TEST (skipped_frames_and_reverse_playback_find_their_motion)
 {
   static const guint forward[] = { 3, 4, 6, 9, 9 + 5, 19, 20 };
   static const guint backward[] = { 12, 11, 8, 5 };
@@ -126,7 +126,7 @@ GST_START_TEST (frames_with_one_timestamp_take_its_lines_in_order)
 
 GST_END_TEST;
 
-GST_START_TEST (lines_without_times_are_taken_one_after_the_other)
+GST_START_TEST (lines_without_times_are_taken_in_order)
 {
   GstHarness *h = harness_new ("in", NULL);
   GstSegment segment;
@@ -234,7 +234,7 @@ GST_START_TEST (files_that_cannot_be_opened_are_an_error_at_the_start)
 
 GST_END_TEST;
 
-/* Nobody need ask for the rolling shutter: it is on by default. */
+/* Also by default, because rolling-shutter is on by default. */
 GST_START_TEST (a_rolling_shutter_that_is_not_corrected_is_one_warning)
 {
   gint shutter;
@@ -299,9 +299,9 @@ motionin_suite (void)
   suite_add_tcase (s, tc);
   tcase_add_checked_fixture (tc, make_folder, remove_folder);
   tcase_add_test (tc,
-      frames_that_are_left_out_or_run_backward_find_their_motion);
+      skipped_frames_and_reverse_playback_find_their_motion);
   tcase_add_test (tc, frames_with_one_timestamp_take_its_lines_in_order);
-  tcase_add_test (tc, lines_without_times_are_taken_one_after_the_other);
+  tcase_add_test (tc, lines_without_times_are_taken_in_order);
   tcase_add_loop_test (tc, a_faulty_file_stops_the_start_and_the_error_says_where, 0,
       G_N_ELEMENTS (faulty));
   tcase_add_test (tc, files_that_cannot_be_opened_are_an_error_at_the_start);

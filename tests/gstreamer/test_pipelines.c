@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Whole pipelines, with the elements that users put around it. */
+/* Whole pipelines, with the elements that users combine with l1l2stab. */
 #include <glib/gstdio.h>
 
 #include "stabharness.h"
 
 #define N_FRAMES 45
-/* Where plugins of other packages are missing, all pipelines but the live one are left out. */
+/* If plugins of other packages are missing, all pipelines but the live one are skipped. */
 static const gchar *const needed[] = {
   "x264enc", "mp4mux", "qtdemux", "h264parse", "decodebin", "avdec_h264",
   "avenc_aac", "avdec_aac", NULL
@@ -137,7 +137,7 @@ GST_START_TEST (a_file_keeps_its_frames_and_their_times)
 
 GST_END_TEST;
 
-GST_START_TEST (a_file_with_sound_comes_to_its_end)
+GST_START_TEST (a_file_with_audio_plays_to_its_end)
 {
   run ("filesrc location=%s ! decodebin name=in "
       "in. ! queue ! l1l2stab window=40 ! x264enc ! queue ! mp4mux name=out ! "
@@ -188,11 +188,11 @@ pipelines_suite (void)
 
   suite_add_tcase (s, files);
   if (stab_have_elements (needed)) {
-    /* Made anew for each test: it is a process of its own, and GStreamer's threads do not live on in a fork. */
+    /* Made anew for each test, because each test is a process of its own and threads do not survive a fork. */
     tcase_add_checked_fixture (files, make_files, remove_files);
     tcase_add_loop_test (files, a_file_keeps_its_frames_and_their_times, 0,
         G_N_ELEMENTS (settings));
-    tcase_add_test (files, a_file_with_sound_comes_to_its_end);
+    tcase_add_test (files, a_file_with_audio_plays_to_its_end);
     tcase_add_test (files, output_size_crop_can_be_encoded);
     tcase_add_test (files, two_files_in_a_row_are_two_streams);
   }

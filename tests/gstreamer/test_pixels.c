@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The pictures that come out are those that the library makes of the same frames with the same settings. */
+/* The output frames equal those that the library renders from the same frames with the same settings. */
 #include <l1l2stab/l1l2stab.h>
 
 #include "stabharness.h"
@@ -40,7 +40,7 @@ static const struct
 #define INPUT L1L2STAB_OUTPUT_SIZE_INPUT
 #define CROP L1L2STAB_OUTPUT_SIZE_CROP
 
-/* What the element is told, and the same in the library's words. */
+/* A setting as a property of the element and as a field of the library's config. */
 typedef struct
 {
   const gchar *caps, *properties;
@@ -101,7 +101,7 @@ init_config (L1L2StabConfig * config, const Setting * setting,
   config->output_size = setting->size;
 }
 
-/* Cells of noise, other ones in each component, that jump while they pan. */
+/* Cells of noise, different in each component, that jump while they pan. */
 static GstBuffer *
 noise_frame_new (const GstVideoInfo * info, guint index)
 {

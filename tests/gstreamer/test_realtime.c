@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* In real time, on a machine that has some to spare: the latency tracer measures what is reported, and a synchronised
- * sink gets no frame too late. test_time.c has the same with a test clock. */
+/* In real time, on a machine with time to spare: the latency tracer measures the latency that is reported, and a
+ * synchronized sink gets no frame too late. test_time.c has the same with a test clock. */
 #include <stdlib.h>
 
 #include "stabharness.h"
@@ -14,7 +14,7 @@
 static GMutex lock;
 static GArray *measured;        /* GstClockTime */
 
-/* What the tracer writes of the element named "stab". */
+/* What the tracer logs about the element named "stab". */
 static void
 read_tracer (GstDebugCategory * category, GstDebugLevel level,
     const gchar * file, const gchar * function, gint line, GObject * object,
@@ -82,8 +82,8 @@ static const struct
   {4, FALSE}, {30, FALSE}, {150, FALSE}, {4, TRUE}, {30, TRUE}, {150, TRUE}
 };
 
-/* The first frames of a stream that is not live come as fast as they can, the last ones are pushed out: neither tells
- * anything. */
+/* Without the first frames, which come as fast as possible, and the last ones, which are drained: their latency means
+ * nothing. */
 GST_START_TEST (the_measured_latency_is_the_reported_one_within_a_frame)
 {
   const guint window = cases[__i__].window;
@@ -111,7 +111,7 @@ GST_START_TEST (the_measured_latency_is_the_reported_one_within_a_frame)
   median = g_array_index (measured, guint64, ENOUGH / 2);
   g_print ("window %u, %s: reported %.1f ms, measured %.1f ms\n", window,
       cases[__i__].live ? "live" : "not live", ours / 1e6, median / 1e6);
-  /* One frame, and a millisecond for two threads' timing. */
+  /* One frame, and a millisecond for the scheduling of two threads. */
   fail_unless (ABS (GST_CLOCK_DIFF (ours, median)) <= FRAME + GST_MSECOND);
   g_array_unref (measured);
   gst_object_unref (pipeline);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What applications are told of each frame, and of all of them: messages and statistics. */
+/* What the element reports: a message for each frame, and statistics of all frames. */
 #include <math.h>
 
 #include "stabnoise.h"
@@ -64,7 +64,7 @@ assert_numbers (const GstStructure * frame, const L1L2StabInfo * info)
   fail_if (fallback || early);
 }
 
-GST_START_TEST (messages_tell_of_each_frame_what_the_library_tells)
+GST_START_TEST (messages_report_what_the_library_reports_of_each_frame)
 {
   static const gchar *models[] = { "none", "identity", "predicted",
     "translation", "similarity", "given", "affine"
@@ -105,7 +105,7 @@ GST_START_TEST (messages_tell_of_each_frame_what_the_library_tells)
 
 GST_END_TEST;
 
-GST_START_TEST (messages_begin_and_end_when_they_are_wished_for)
+GST_START_TEST (messages_start_and_stop_with_the_property)
 {
   GstHarness *h = stab_noise_harness_new (WINDOW);
   guint i, n = 0;
@@ -173,7 +173,7 @@ GST_START_TEST (the_statistics_count_every_frame_once)
 
 GST_END_TEST;
 
-GST_START_TEST (the_statistics_tell_of_quality_time_and_cost)
+GST_START_TEST (the_statistics_report_quality_latency_and_time)
 {
   static const gchar *times[] = { "scale-time", "track-time", "fit-time",
     "solve-time", "warp-time"
@@ -221,10 +221,10 @@ report_suite (void)
   TCase *tc = tcase_create ("report");
 
   suite_add_tcase (s, tc);
-  tcase_add_test (tc, messages_tell_of_each_frame_what_the_library_tells);
-  tcase_add_test (tc, messages_begin_and_end_when_they_are_wished_for);
+  tcase_add_test (tc, messages_report_what_the_library_reports_of_each_frame);
+  tcase_add_test (tc, messages_start_and_stop_with_the_property);
   tcase_add_test (tc, the_statistics_count_every_frame_once);
-  tcase_add_test (tc, the_statistics_tell_of_quality_time_and_cost);
+  tcase_add_test (tc, the_statistics_report_quality_latency_and_time);
   return s;
 }
 

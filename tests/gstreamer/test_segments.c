@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Rates, directions and trick modes: what a segment says of the frames in it. */
+/* Segments: rates, directions, trick modes and updates. */
 #include "stabharness.h"
 
 #define WINDOW 8
@@ -67,8 +67,8 @@ GST_START_TEST (in_reverse_the_frames_and_the_position_go_back)
 
 GST_END_TEST;
 
-/* Every tenth frame, as of groups of ten. */
-GST_START_TEST (in_reverse_the_marks_of_a_decoder_end_no_window)
+/* A discontinuity at every tenth frame, as with groups of ten pictures. */
+GST_START_TEST (in_reverse_the_discontinuities_of_a_decoder_end_no_path)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   gint i;
@@ -95,7 +95,7 @@ GST_START_TEST (in_reverse_the_marks_of_a_decoder_end_no_window)
 
 GST_END_TEST;
 
-/* Each by itself, and framed as in normal playback: the region tells. */
+/* Each key frame is cropped as in normal playback; the region of interest shows it. */
 GST_START_TEST (key_frames_alone_leave_at_once)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW,
@@ -165,7 +165,7 @@ push_segment_with (GstHarness * h, gdouble rate, GstClockTime stop,
   fail_unless (gst_harness_push_event (h, gst_event_new_segment (&segment)));
 }
 
-/* As a live source or an adaptive stream does when the end of what it plays becomes known or moves. */
+/* A live source or an adaptive stream sends one when its end becomes known or moves. */
 GST_START_TEST (an_update_of_the_segment_keeps_its_place_and_does_not_drain)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW,
@@ -262,7 +262,7 @@ segments_suite (void)
   tcase_add_loop_test (tc, the_window_is_full_at_any_rate, 0,
       G_N_ELEMENTS (rates));
   tcase_add_test (tc, in_reverse_the_frames_and_the_position_go_back);
-  tcase_add_test (tc, in_reverse_the_marks_of_a_decoder_end_no_window);
+  tcase_add_test (tc, in_reverse_the_discontinuities_of_a_decoder_end_no_path);
   tcase_add_test (tc, key_frames_alone_leave_at_once);
   tcase_add_test (tc, a_segment_goes_downstream_as_it_came);
   tcase_add_test (tc,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Properties: the library's fields, defaults and ranges, and what happens when they contradict each other. */
+/* Properties: they have the defaults and ranges of the library's fields, and contradictions between them are errors. */
 #include <l1l2stab/l1l2stab.h>
 
 #include "stabharness.h"
@@ -104,7 +104,7 @@ GST_START_TEST (a_value_out_of_range_is_refused)
 
 GST_END_TEST;
 
-/* Which of these may change when: of the others, none but at rest. */
+/* The flags of the properties that can change during playback. No other property can. */
 static const struct
 {
   const gchar *name;
@@ -117,7 +117,7 @@ static const struct
   {"stats", 0},
 };
 
-GST_START_TEST (what_is_live_says_so_and_nothing_else_does)
+GST_START_TEST (flags_say_which_properties_can_change_while_playing)
 {
   static const GParamFlags mask = GST_PARAM_CONTROLLABLE
       | GST_PARAM_MUTABLE_READY | GST_PARAM_MUTABLE_PAUSED
@@ -153,7 +153,7 @@ static const gchar *names[] = {
   "motion-in", "motion-out", "rolling-shutter"
 };
 
-GST_START_TEST (every_setting_reads_back)
+GST_START_TEST (every_property_reads_back_its_value)
 {
   GstElement *element = gst_element_factory_make ("l1l2stab", NULL);
   static const gchar *values[] = {
@@ -183,7 +183,7 @@ GST_START_TEST (every_setting_reads_back)
 
 GST_END_TEST;
 
-/* Takes the error off the bus and checks that its text has all of the words. */
+/* Takes the error from the bus and checks that its text has all of the words. */
 static void
 assert_error_says (GstBus * bus, const gchar * const *words)
 {
@@ -309,8 +309,8 @@ settings_suite (void)
   tcase_add_loop_test (tc, the_ranges_are_the_librarys, 0,
       G_N_ELEMENTS (numbers));
   tcase_add_test (tc, a_value_out_of_range_is_refused);
-  tcase_add_test (tc, what_is_live_says_so_and_nothing_else_does);
-  tcase_add_test (tc, every_setting_reads_back);
+  tcase_add_test (tc, flags_say_which_properties_can_change_while_playing);
+  tcase_add_test (tc, every_property_reads_back_its_value);
   tcase_add_loop_test (tc,
       a_contradiction_fails_at_the_start_and_says_what_to_change, 0,
       G_N_ELEMENTS (contradictions));

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The element starts, stops and starts again, and leaves nothing behind. */
+/* State changes: the element starts, stops and starts again, and keeps nothing of the stream before. */
 #include "stabharness.h"
 
 #define WINDOW 8
 
-/* Runs to the end of the stream; what arrives is counted. */
+/* Runs to the end of the stream and counts the frames. */
 static void
 run_to_end (GstElement * pipeline)
 {
@@ -27,7 +27,7 @@ count (GstElement * sink, GstBuffer * buffer, GstPad * pad, gpointer user_data)
   (*(guint *) user_data)++;
 }
 
-GST_START_TEST (a_hundred_rounds_of_playing_give_all_frames_each_time)
+GST_START_TEST (a_hundred_restarts_give_all_frames_each_time)
 {
   GstElement *pipeline = gst_parse_launch ("videotestsrc num-buffers=12 ! "
       "video/x-raw, width=64, height=48 ! l1l2stab window=8 ! "
@@ -48,7 +48,7 @@ GST_START_TEST (a_hundred_rounds_of_playing_give_all_frames_each_time)
 
 GST_END_TEST;
 
-GST_START_TEST (a_seek_starts_anew_and_gives_all_frames_from_there)
+GST_START_TEST (a_seek_gives_all_frames_from_its_target_on)
 {
   GstElement *pipeline = gst_parse_launch ("videotestsrc ! "
       "video/x-raw, width=64, height=48, framerate=10/1 ! l1l2stab window=8 ! "
@@ -72,7 +72,7 @@ GST_START_TEST (a_seek_starts_anew_and_gives_all_frames_from_there)
 
 GST_END_TEST;
 
-GST_START_TEST (stopping_lets_go_of_what_is_held)
+GST_START_TEST (stopping_releases_the_held_frames)
 {
   GstHarness *h = stab_harness_new (SMALL_CAPS, "window", WINDOW, NULL);
   GstBuffer *kept = stab_frame_new (h, 0);
@@ -134,9 +134,9 @@ states_suite (void)
   TCase *tc = tcase_create ("states");
 
   suite_add_tcase (s, tc);
-  tcase_add_test (tc, a_hundred_rounds_of_playing_give_all_frames_each_time);
-  tcase_add_test (tc, a_seek_starts_anew_and_gives_all_frames_from_there);
-  tcase_add_test (tc, stopping_lets_go_of_what_is_held);
+  tcase_add_test (tc, a_hundred_restarts_give_all_frames_each_time);
+  tcase_add_test (tc, a_seek_gives_all_frames_from_its_target_on);
+  tcase_add_test (tc, stopping_releases_the_held_frames);
   tcase_add_test (tc, after_a_restart_nothing_of_the_old_stream_comes_out);
   tcase_add_test (tc, a_frame_before_any_caps_is_refused);
   return s;

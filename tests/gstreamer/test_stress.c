@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A thousand things at random, always the same ones: no frame is lost or comes twice, nothing blocks for ever. What
- * comes out of the element is compared with what went in, at its pads. */
+/* A thousand random actions with a fixed seed: no frame is lost or comes twice, and nothing blocks forever. What
+ * comes out of the element is compared at its pads with what went in. */
 #include <gst/check/gsttestclock.h>
 
 #include "stabharness.h"
@@ -115,7 +115,7 @@ monitor_element (Monitor * monitor, GstElement * element)
   monitor->fault = NULL;
   gst_pad_add_probe (sink, GST_PAD_PROBE_TYPE_BUFFER |
       GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, goes_in, monitor, NULL);
-  /* The peer's pad: while that one is stopped already, nothing comes out. */
+  /* On the pad of the peer, because nothing comes out while that pad is stopped. */
   gst_pad_add_probe (peer, GST_PAD_PROBE_TYPE_BUFFER |
       GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM | GST_PAD_PROBE_TYPE_EVENT_FLUSH,
       comes_out, monitor, NULL);
@@ -152,7 +152,7 @@ change_a_property (GRand * rand, GstElement * stab)
   }
 }
 
-/* --- a harness: everything from one thread, and the clock's task beside it --- */
+/* --- a harness: all actions from one thread, with the task of the timer in parallel --- */
 
 typedef struct
 {
@@ -216,7 +216,7 @@ flush (Play * play)
   push_segment (play);
 }
 
-/* The next wait of the clock's task is over, if there is one. */
+/* Ends the next wait of the timer's task, if there is one. */
 static void
 let_time_pass (Play * play)
 {
@@ -303,9 +303,9 @@ GST_START_TEST (a_thousand_random_events_lose_no_frame)
 
 GST_END_TEST;
 
-/* --- a pipeline: the source's thread, the clock's task and the application at once --- */
+/* --- a pipeline: the thread of the source, the task of the timer and the application in parallel --- */
 
-/* A live source gives no frame in PAUSED: then there is nothing to wait for. */
+/* A live source delivers no frame in PAUSED, so there is nothing to wait for. */
 static void
 set_state (GstElement * pipeline, GstState state, gboolean live)
 {
@@ -338,7 +338,7 @@ set_caps (GRand * rand, GstElement * filter)
   GstCaps *caps = gst_caps_from_string (caps_list[g_rand_int_range (rand, 0,
               G_N_ELEMENTS (caps_list))]);
 
-  /* Fast, so that a live source fills a window now and then. */
+  /* A high frame rate, so that a live source fills a window now and then. */
   gst_caps_set_simple (caps, "framerate", GST_TYPE_FRACTION, 400, 1, NULL);
   g_object_set (filter, "caps", caps, NULL);
   gst_caps_unref (caps);

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* No frame is held for longer than the reported latency, whether others come in or not. Time is a test clock's. */
+/* No frame is held for longer than the reported latency, whether other frames come in or not. A test clock gives the
+ * time. */
 #include <gst/check/gsttestclock.h>
 
 #include "stabharness.h"
 
 #define WINDOW 8
 #define LATENCY (WINDOW * FRAME_DURATION)
-/* A frame leaves half a duration before its time is up. */
+/* A frame leaves half a frame duration before the latency has passed. */
 #define LIMIT (LATENCY - FRAME_DURATION / 2)
 
-/* The source of a harness is live. */
+/* The source pad of a harness is live. */
 static GstHarness *
 live_harness_new (void)
 {
@@ -26,7 +27,7 @@ clock_time (GstHarness * h)
   return now;
 }
 
-/* The frame of this time comes in, at this time. */
+/* Pushes the frame with this timestamp when the clock has this time. */
 static void
 push_live (GstHarness * h, GstClockTime pts)
 {
@@ -35,7 +36,7 @@ push_live (GstHarness * h, GstClockTime pts)
               FRAME_DURATION)), GST_FLOW_OK);
 }
 
-/* The frame of this time comes out, now, and not too late. */
+/* Pulls the frame with this timestamp, which must be there and not be late. */
 static void
 pull_in_time (GstHarness * h, GstClockTime pts)
 {
@@ -47,7 +48,7 @@ pull_in_time (GstHarness * h, GstClockTime pts)
   gst_buffer_unref (buffer);
 }
 
-/* Waits are over, one after the other, up to this time: the first may be for a frame that has left since. */
+/* Ends the waits on the clock one by one up to this time. The first one can be for a frame that has already left. */
 static void
 crank_to (GstHarness * h, GstClockTime time)
 {
@@ -118,7 +119,7 @@ GST_START_TEST (a_live_source_with_a_gap_of_three_seconds_is_in_time)
 
 GST_END_TEST;
 
-GST_START_TEST (a_live_source_in_time_is_never_hurried)
+GST_START_TEST (a_live_source_in_time_keeps_its_full_look_ahead)
 {
   GstHarness *h = live_harness_new ();
   guint i;
@@ -144,8 +145,8 @@ take_three_durations (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
   return GST_PAD_PROBE_OK;
 }
 
-/* The source waits meanwhile; its frames are there as soon as the sink has taken one. */
-GST_START_TEST (a_sink_that_blocks_hurries_no_frame)
+/* The source waits while a push blocks, and delivers its frames as soon as the sink has taken one. */
+GST_START_TEST (a_sink_that_blocks_shortens_no_look_ahead)
 {
   GstHarness *h = live_harness_new ();
   guint i;
@@ -192,7 +193,7 @@ GST_START_TEST (a_live_frames_delay_is_the_reported_latency_within_a_frame)
 
 GST_END_TEST;
 
-GST_START_TEST (what_waits_for_a_frame_leaves_with_it)
+GST_START_TEST (an_event_that_waits_for_a_frame_leaves_with_it)
 {
   GstHarness *h = live_harness_new ();
   GString *out;
@@ -211,8 +212,8 @@ GST_START_TEST (what_waits_for_a_frame_leaves_with_it)
 
 GST_END_TEST;
 
-/* As a pipeline does: running time stands still. */
-GST_START_TEST (in_a_pause_no_time_goes_by)
+/* The base time is moved as a pipeline does it, so running time stands still. */
+GST_START_TEST (no_time_passes_in_a_pause)
 {
   const GstClockTime pause = 10 * GST_SECOND;
   GstHarness *h = live_harness_new ();
@@ -231,7 +232,7 @@ GST_START_TEST (in_a_pause_no_time_goes_by)
 
 GST_END_TEST;
 
-GST_START_TEST (a_flush_leaves_the_clock_nothing_to_let_go)
+GST_START_TEST (after_a_flush_the_timer_releases_no_old_frame)
 {
   GstHarness *h = live_harness_new ();
   GstSegment segment;
@@ -250,7 +251,7 @@ GST_START_TEST (a_flush_leaves_the_clock_nothing_to_let_go)
 
 GST_END_TEST;
 
-/* The frame before had set the timer for the old latency. */
+/* The timer was set with the old latency. */
 GST_START_TEST (after_the_latency_shrinks_a_frame_leaves_by_the_new_one)
 {
   const GstClockTime duration = 10 * GST_MSECOND;
@@ -284,7 +285,7 @@ end_once (GstPad * pad, GstPadProbeInfo * info, gpointer user_data)
   return GST_PAD_PROBE_HANDLED;
 }
 
-GST_START_TEST (what_the_clock_met_downstream_goes_upstream_with_the_next_frame)
+GST_START_TEST (a_flow_return_that_the_timer_got_goes_upstream_with_the_next_frame)
 {
   GstHarness *h = live_harness_new ();
   GstPad *pad = gst_element_get_static_pad (h->element, "src");
@@ -332,17 +333,17 @@ time_suite (void)
   tcase_add_test (tc, frames_of_a_stalled_live_source_leave_by_the_clock);
   tcase_add_test (tc, a_live_source_at_half_its_rate_is_in_time);
   tcase_add_test (tc, a_live_source_with_a_gap_of_three_seconds_is_in_time);
-  tcase_add_test (tc, a_live_source_in_time_is_never_hurried);
-  tcase_add_test (tc, a_sink_that_blocks_hurries_no_frame);
+  tcase_add_test (tc, a_live_source_in_time_keeps_its_full_look_ahead);
+  tcase_add_test (tc, a_sink_that_blocks_shortens_no_look_ahead);
   tcase_add_loop_test (tc,
       a_live_frames_delay_is_the_reported_latency_within_a_frame, 0,
       G_N_ELEMENTS (windows));
-  tcase_add_test (tc, what_waits_for_a_frame_leaves_with_it);
-  tcase_add_test (tc, in_a_pause_no_time_goes_by);
-  tcase_add_test (tc, a_flush_leaves_the_clock_nothing_to_let_go);
+  tcase_add_test (tc, an_event_that_waits_for_a_frame_leaves_with_it);
+  tcase_add_test (tc, no_time_passes_in_a_pause);
+  tcase_add_test (tc, after_a_flush_the_timer_releases_no_old_frame);
   tcase_add_test (tc, after_the_latency_shrinks_a_frame_leaves_by_the_new_one);
   tcase_add_test (tc,
-      what_the_clock_met_downstream_goes_upstream_with_the_next_frame);
+      a_flow_return_that_the_timer_got_goes_upstream_with_the_next_frame);
   tcase_add_test (tc, stopping_ends_the_wait);
   return s;
 }

@@ -13,13 +13,16 @@ is_about_the_whole (const gchar * const *tags)
   return TRUE;
 }
 
-/* AFD and bars describe black borders. They stay nearly true, because stabilization moves the picture only a little. */
+/* An overlay, such as subtitles, is placed in the output picture. It has to be named here because GStreamer 1.26 gave
+ * its meta tags that it did not have in 1.22. AFD and bars describe black borders. They stay nearly true, because
+ * stabilization moves the picture only a little. */
 gboolean
 gst_l1l2_stab_copy_meta_keeps (const GstMeta * meta)
 {
   const GType api = meta->info->api;
 
   return is_about_the_whole (gst_meta_api_type_get_tags (api))
+      || api == GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE
       || api == GST_VIDEO_AFD_META_API_TYPE
       || api == GST_VIDEO_BAR_META_API_TYPE
       || api == GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE;

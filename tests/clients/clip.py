@@ -23,7 +23,8 @@ SKIPPED = 77
 try:
     import gi
     gi.require_version('Gst', '1.0')
-    from gi.repository import Gst
+    gi.require_version('GstVideo', '1.0')
+    from gi.repository import Gst, GstVideo
 except (ImportError, ValueError) as reason:
     print('skipped: no Python bindings of GStreamer:', reason)
     sys.exit(SKIPPED)
@@ -194,8 +195,8 @@ def time_of(sample):
 
 def frame_of(sample, zoom=1.05):
     """A Frame from a GRAY8 sample."""
-    caps = sample.get_caps().get_structure(0)
-    width, height = caps.get_value('width'), caps.get_value('height')
+    info = GstVideo.VideoInfo.new_from_caps(sample.get_caps())
+    width, height = info.width, info.height
     buffer = sample.get_buffer()
     luma = buffer.extract_dup(0, buffer.get_size())
     stride = len(luma) // height

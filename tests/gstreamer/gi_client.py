@@ -78,7 +78,7 @@ class Client(unittest.TestCase):
         self.assertGreaterEqual(len(own), 14)
         for spec in own:
             self.assertTrue(len(spec.blurb) > 20, spec.name)
-        self.assertEqual(stab.find_property('join').default_value.value_nick, 'continuous')
+        self.assertEqual(stab.get_property('join').value_nick, 'continuous')
         stab.set_property('motion-model', 'translation')
         self.assertEqual(stab.get_property('motion-model').value_nick, 'translation')
 

@@ -33,7 +33,7 @@ static void set_planes(L1L2StabFrame *frame, uint8_t *memory, Size size)
     frame->data[2] = frame->data[1] + chroma_stride * ((size.height + 1) / 2);
 }
 
-/* The library holds a window of frames, so each gets memory of its own, which goes back with release. 0: no more. */
+/* The library holds a window of frames, so each gets memory of its own, which release frees. 0: no more frames. */
 static int read_frame(L1L2StabFrame *in, Size size)
 {
     const size_t bytes = frame_bytes(size);
@@ -54,14 +54,14 @@ static void log_line(void *cookie, L1L2StabLogLevel level, const char *message)
     fprintf(stderr, "l1l2stab: %s\n", message);
 }
 
-/* The loop of l1l2stab.h. EOS when all is done. */
+/* The loop of l1l2stab.h. OK when all went well. After an error the frames that are held still come out. */
 static L1L2StabResult stabilize(L1L2Stab *s, Size size, uint8_t *memory)
 {
     L1L2StabFrame in = {0}, out = {0};
     L1L2StabResult r = L1L2STAB_OK;
 
     set_planes(&out, memory, size);
-    while (r >= 0 && read_frame(&in, size)) {
+    while (read_frame(&in, size)) {
         if ((r = l1l2stab_push(s, &in)) != L1L2STAB_OK) {
             free(in.opaque);
             break;
@@ -69,12 +69,10 @@ static L1L2StabResult stabilize(L1L2Stab *s, Size size, uint8_t *memory)
         while ((r = l1l2stab_pull(s, &out, NULL)) == L1L2STAB_OK)
             fwrite(memory, 1, frame_bytes(size), stdout);
     }
-    if (r >= 0)
-        r = l1l2stab_finish(s);
-    while (r == L1L2STAB_OK)
-        if ((r = l1l2stab_pull(s, &out, NULL)) == L1L2STAB_OK)
-            fwrite(memory, 1, frame_bytes(size), stdout);
-    return r;
+    l1l2stab_finish(s);
+    while (l1l2stab_pull(s, &out, NULL) == L1L2STAB_OK)
+        fwrite(memory, 1, frame_bytes(size), stdout);
+    return r < 0 ? r : l1l2stab_take_error(s);
 }
 
 int main(int argc, char **argv)
@@ -104,7 +102,7 @@ int main(int argc, char **argv)
     free(memory);
     l1l2stab_free(&s);
 
-    if (r != L1L2STAB_EOS) {
+    if (r != L1L2STAB_OK) {
         fprintf(stderr, "stabilize-raw: %s\n", l1l2stab_strerror(r));
         return 1;
     }

@@ -6,9 +6,11 @@
 #include <string.h>
 
 #include "common/log.h"
+#include "common/struct_size.h"
 
-/* The overlap that 0 stands for. blend: the paper's. continuous: |DP| pulls the open end of a window flat for some 40
- * frames; with K = 100 of N = 150 that does not reach frames that are given out (docs/path.md has the table). */
+/* The overlap that 0 stands for. The window must have been checked. blend: the paper's. continuous: |DP| pulls the open
+ * end of a window flat for some 40 frames; with K = 100 of N = 150 that does not reach emitted frames (docs/path.md has
+ * the table). */
 static int default_overlap(L1L2StabJoin join, int window)
 {
     const int overlap = join == L1L2STAB_JOIN_BLEND ? window / 5 : window * 2 / 3;
@@ -67,7 +69,7 @@ static bool overlap_fits(const L1L2StabConfig *cfg)
         return true;
     if (most < 3)
         l1l2_log(&cfg->logger, L1L2STAB_LOG_ERROR,
-                 "window is %d: join=blend needs at least 6 frames, since an overlap of 3 may be half of it at most",
+                 "window is %d: join=blend needs at least 6 frames, since the overlap is at least 3 and at most half",
                  cfg->window);
     else
         l1l2_log(&cfg->logger, L1L2STAB_LOG_ERROR,
@@ -76,17 +78,18 @@ static bool overlap_fits(const L1L2StabConfig *cfg)
     return false;
 }
 
-bool l1l2_config_check_knobs(const L1L2StabConfig *cfg)
+bool l1l2_config_check_live(const L1L2StabConfig *cfg)
 {
     return in_range(cfg, "lambda", cfg->lambda, 0, 1000) && in_range(cfg, "crop_ratio", cfg->crop_ratio, 0.5, 0.99);
 }
 
-static bool valid(const L1L2StabConfig *cfg)
+/* Every range that does not depend on another field. What does depend is computed and checked after these. */
+static bool ranges_fit(const L1L2StabConfig *cfg)
 {
     return in_range(cfg, "width", cfg->width, 16, 16384) && in_range(cfg, "height", cfg->height, 16, 16384) &&
            in_range(cfg, "frame_rate", cfg->frame_rate, 0, 1000) &&
            in_range(cfg, "chroma_site", cfg->chroma_site, L1L2STAB_CHROMA_SITE_LEFT, L1L2STAB_CHROMA_SITE_TOP_LEFT) &&
-           l1l2_config_check_knobs(cfg) && in_range(cfg, "window", cfg->window, 4, 900) &&
+           l1l2_config_check_live(cfg) && in_range(cfg, "window", cfg->window, 4, 900) &&
            in_range(cfg, "join", cfg->join, L1L2STAB_JOIN_CONTINUOUS, L1L2STAB_JOIN_BLEND) &&
            in_range(cfg, "interpolation", cfg->interpolation, L1L2STAB_INTERPOLATION_BILINEAR,
                     L1L2STAB_INTERPOLATION_LANCZOS) &&
@@ -98,24 +101,39 @@ static bool valid(const L1L2StabConfig *cfg)
                     L1L2STAB_MOTION_MODEL_AFFINE) &&
            in_range(cfg, "rolling_shutter", cfg->rolling_shutter, L1L2STAB_ROLLING_SHUTTER_NONE,
                     L1L2STAB_ROLLING_SHUTTER_MIXTURE) &&
-           weights_fit(cfg) && overlap_fits(cfg);
+           weights_fit(cfg);
+}
+
+/* Fields that the caller's config knows but this library does not: the logger is one that both know. */
+static void log_unknown_field(const L1L2StabConfig *in)
+{
+    l1l2_log(&in->logger, L1L2STAB_LOG_ERROR,
+             "a config of %zu bytes sets a field that came after version %s: leave it 0, or update the library",
+             in->struct_size, l1l2stab_version());
 }
 
 L1L2StabResult l1l2_config_resolve(const L1L2StabConfig *in, L1L2StabConfig *out)
 {
-    if (!in || in->struct_size < offsetof(L1L2StabConfig, format))
+    if (!in)
         return L1L2STAB_ERR_ARGUMENT;
     l1l2stab_config_init(out, sizeof *out);
-    memcpy(out, in, in->struct_size < sizeof *out ? in->struct_size : sizeof *out);
+    const L1L2StabResult result =
+        l1l2_struct_read(out, sizeof *out, in, in->struct_size, offsetof(L1L2StabConfig, format));
+    if (result == L1L2STAB_ERR_UNSUPPORTED)
+        log_unknown_field(in);
+    if (result != L1L2STAB_OK)
+        return result;
     out->struct_size = sizeof *out;
     if (!l1l2_image_format_info(out->format)) {
         l1l2_log(&out->logger, L1L2STAB_LOG_ERROR, "format %d is not offered: choose an L1L2STAB_FORMAT_*",
                  (int)out->format);
         return L1L2STAB_ERR_UNSUPPORTED;
     }
+    if (!ranges_fit(out))
+        return L1L2STAB_ERR_ARGUMENT;
     if (out->overlap == 0)
         out->overlap = default_overlap(out->join, out->window);
-    return valid(out) ? L1L2STAB_OK : L1L2STAB_ERR_ARGUMENT;
+    return overlap_fits(out) ? L1L2STAB_OK : L1L2STAB_ERR_ARGUMENT;
 }
 
 static int even_part(double size)

@@ -13,6 +13,7 @@ typedef struct L1L2QueuedFrame {
     double F_px[9]; /* the motion in pixels */
     double lambda, crop_ratio; /* as they were when the frame was pushed */
     int64_t solve_ns;
+    bool failed; /* its motion could not be measured, by an error */
 } L1L2QueuedFrame;
 
 typedef struct L1L2FrameQueue {

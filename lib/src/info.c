@@ -32,6 +32,8 @@ void l1l2_info_describe(L1L2StabInfo *info, const L1L2QueuedFrame *held, const L
         info->flags |= L1L2STAB_INFO_PATH_START;
     if (info->model == L1L2STAB_MOTION_SOURCE_IDENTITY || info->model == L1L2STAB_MOTION_SOURCE_PREDICTED)
         info->flags |= L1L2STAB_INFO_MOTION_LOST;
+    if (held->failed)
+        info->flags |= L1L2STAB_INFO_MOTION_FAILED | L1L2STAB_INFO_MOTION_LOST;
     if (f->fallback)
         info->flags |= L1L2STAB_INFO_PATH_FALLBACK;
     if (f->early)

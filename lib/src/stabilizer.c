@@ -8,6 +8,7 @@
  *
  * States: open -> finished (finish) -> open (reset). Frames wait in the ring from push to pull.
  */
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -36,12 +37,11 @@ struct L1L2Stab {
     L1L2FrameQueue ring;
     bool finished;
     int hurried;              /* of the held frames, the oldest, which are ready whatever comes */
-    bool decided;             /* `next` holds the path of the oldest held frame */
-    L1L2PathFrame next;
     uint64_t pulled;          /* frames since create or reset */
     L1L2Mat camera, smooth;   /* C_t and P_t of the last pulled frame relative to its path's first: for display only */
     L1L2Fade bypass;
     double lambda, crop_ratio; /* of the frames that are pushed from now on */
+    L1L2StabResult error;     /* the first that measuring met and l1l2stab_take_error() has not returned */
     double diagonal_px;
 };
 
@@ -149,9 +149,11 @@ void l1l2stab_reset(L1L2Stab *s)
     l1l2_frame_queue_drop_all(&s->ring);
     l1l2_path_reset(s->path);
     l1l2_shutter_filter_reset(s->wobble);
-    s->finished = s->decided = false;
+    s->finished = false;
     s->hurried = 0;
     s->pulled = 0;
+    s->error = L1L2STAB_OK;
+    l1l2_fade_next(&s->bypass, true);
 }
 
 /* The frames between given motions are not tracked: a measured one after them starts from nothing. */
@@ -185,20 +187,33 @@ static void extend_path(L1L2Stab *s, L1L2QueuedFrame *held, const double *given_
     l1l2_frame_queue_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
 }
 
-/* Waits for the newest frame's motion, if it is being measured, and extends the path by it. An error is told once: the
- * frame then starts a path, and the next call goes on. */
-static L1L2StabResult settle(L1L2Stab *s)
+/* Waits for the newest frame's motion, if it is being measured, and extends the path by it. A frame that could not be
+ * measured starts a path, so that no call but l1l2stab_take_error() has to return the error. */
+static void settle(L1L2Stab *s)
 {
     if (!l1l2_motion_worker_is_open(s->analysis))
-        return L1L2STAB_OK;
+        return;
     L1L2QueuedFrame *held = l1l2_frame_queue_at(&s->ring, s->ring.count - 1);
     const L1L2StabResult result = l1l2_motion_worker_take(s->analysis, &held->motion);
     if (result != L1L2STAB_OK) {
-        l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR, "the motion of a frame: %s", l1l2stab_strerror(result));
+        l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR, "the motion of frame %llu could not be measured: %s. A new path"
+                 " starts there", (unsigned long long)(s->pulled + (uint64_t)s->ring.count - 1),
+                 l1l2stab_strerror(result));
         held->motion = (L1L2MotionResult){.F = l1l2_mat_identity(), .model = L1L2STAB_MOTION_SOURCE_NONE};
+        held->failed = true;
+        if (s->error == L1L2STAB_OK)
+            s->error = result;
     }
     extend_path(s, held, NULL);
-    return result;
+}
+
+L1L2StabResult l1l2stab_take_error(L1L2Stab *s)
+{
+    if (!s)
+        return L1L2STAB_ERR_ARGUMENT;
+    const L1L2StabResult error = s->error;
+    s->error = L1L2STAB_OK;
+    return error;
 }
 
 L1L2StabResult l1l2stab_set_lambda(L1L2Stab *s, double lambda)
@@ -207,7 +222,7 @@ L1L2StabResult l1l2stab_set_lambda(L1L2Stab *s, double lambda)
         return L1L2STAB_ERR_ARGUMENT;
     L1L2StabConfig wanted = s->cfg;
     wanted.lambda = lambda;
-    if (!l1l2_config_check_knobs(&wanted))
+    if (!l1l2_config_check_live(&wanted))
         return L1L2STAB_ERR_ARGUMENT;
     s->lambda = lambda;
     return L1L2STAB_OK;
@@ -219,7 +234,7 @@ L1L2StabResult l1l2stab_set_crop_ratio(L1L2Stab *s, double crop_ratio)
         return L1L2STAB_ERR_ARGUMENT;
     L1L2StabConfig wanted = s->cfg;
     wanted.crop_ratio = crop_ratio;
-    if (!l1l2_config_check_knobs(&wanted))
+    if (!l1l2_config_check_live(&wanted))
         return L1L2STAB_ERR_ARGUMENT;
     s->crop_ratio = crop_ratio;
     return L1L2STAB_OK;
@@ -240,25 +255,27 @@ static bool planes_given(const L1L2Stab *s, const L1L2StabFrame *frame)
 
 L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
 {
+    L1L2StabFrame frame;
     if (!s || !in)
         return L1L2STAB_ERR_ARGUMENT;
-    if (!(in->motion ? l1l2_frame_has_motion(in, s->cfg.motion_model, &s->cfg.logger) : planes_given(s, in)))
+    const L1L2StabResult result = l1l2_frame_read(in, &frame, &s->cfg.logger);
+    if (result != L1L2STAB_OK)
+        return result;
+    if (!(frame.motion ? l1l2_frame_has_motion(&frame, &s->cfg) : planes_given(s, &frame)))
         return L1L2STAB_ERR_ARGUMENT;
     if (s->finished)
         return L1L2STAB_ERR_STATE;
     if (s->ring.count == s->ring.capacity)
         return L1L2STAB_AGAIN;
-    const bool starts_path = (in->flags & L1L2STAB_FRAME_DISCONT) != 0 || s->ring.count + s->pulled == 0;
-    const L1L2StabResult result = settle(s);
-    if (result != L1L2STAB_OK)
-        return result;
+    const bool starts_path = (frame.flags & L1L2STAB_FRAME_DISCONT) != 0 || s->ring.count + s->pulled == 0;
+    settle(s);
     L1L2QueuedFrame *held = l1l2_frame_queue_append(&s->ring);
-    *held = (L1L2QueuedFrame){.frame = *in, .lambda = s->lambda, .crop_ratio = s->crop_ratio};
-    if (in->motion) {
+    *held = (L1L2QueuedFrame){.frame = frame, .lambda = s->lambda, .crop_ratio = s->crop_ratio};
+    if (frame.motion) {
         held->motion = given_motion(s, starts_path);
-        extend_path(s, held, in->motion);
+        extend_path(s, held, frame.motion);
     } else {
-        l1l2_motion_worker_begin(s->analysis, in->data[0], in->stride[0], starts_path);
+        l1l2_motion_worker_begin(s->analysis, frame.data[0], frame.stride[0], starts_path);
     }
     return L1L2STAB_OK;
 }
@@ -271,11 +288,9 @@ L1L2StabResult l1l2stab_hurry(L1L2Stab *s, int frames)
         frames = s->ring.count;
     if (frames <= s->hurried)
         return L1L2STAB_OK;
-    const L1L2StabResult result = settle(s);
-    if (result != L1L2STAB_OK)
-        return result;
+    settle(s);
     const int64_t start_ns = l1l2_clock_ns();
-    l1l2_path_hurry(s->path, s->decided ? frames - 1 : frames);
+    l1l2_path_hurry(s->path, frames);
     l1l2_frame_queue_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
     s->hurried = frames;
     return L1L2STAB_OK;
@@ -285,9 +300,7 @@ L1L2StabResult l1l2stab_finish(L1L2Stab *s)
 {
     if (!s)
         return L1L2STAB_ERR_ARGUMENT;
-    const L1L2StabResult result = settle(s);
-    if (result != L1L2STAB_OK)
-        return result;
+    settle(s);
     if (!s->finished && s->ring.count > 0) {
         const int64_t start_ns = l1l2_clock_ns();
         l1l2_path_finish(s->path);
@@ -327,53 +340,66 @@ static L1L2Mat warp_map(const L1L2Stab *s, const L1L2Mat *B, double crop_ratio)
     return l1l2_mat_mul(l1l2_mat_rescale(*B, s->diagonal_px), l1l2_mat_diagonal(zoom, zoom));
 }
 
-/* Takes the oldest frame's path out of path.c, once, and carries C_t and P_t on. Mostly it was decided long ago, and
- * the newest frame's motion can wait. */
-static L1L2StabResult fetch_path(L1L2Stab *s)
+/* Whether C is within the range that is accumulated: a million diagonals, a zoom of a million either way. */
+static bool is_displayable(const L1L2Mat *C)
 {
-    if (s->decided)
-        return L1L2STAB_OK;
-    s->decided = l1l2_path_pull(s->path, &s->next);
-    if (!s->decided) {
-        const L1L2StabResult result = settle(s);
-        if (result != L1L2STAB_OK)
-            return result;
-        s->decided = l1l2_path_pull(s->path, &s->next);
+    const double limit = 1e6;
+    double most, least;
+    l1l2_mat_stretch(C, &most, &least);
+    return hypot(C->m[2], C->m[5]) <= limit && most <= limit && fabs(least) >= 1.0 / limit;
+}
+
+/* Takes the oldest frame's path out of path.c, and accumulates C_t and P_t. Mostly the path was decided long ago, and
+ * the newest frame's motion can wait. */
+static L1L2PathFrame fetch_path(L1L2Stab *s)
+{
+    L1L2PathFrame next;
+    if (!l1l2_path_pull(s->path, &next)) {
+        settle(s);
+        const bool decided = l1l2_path_pull(s->path, &next);
+        assert(decided);
+        (void)decided;
     }
     l1l2_shutter_filter_pull(s->wobble);
-    s->camera = s->next.path_index == 0 ? l1l2_mat_identity() : l1l2_mat_mul(s->camera, s->next.F);
-    s->smooth = l1l2_mat_mul(s->camera, s->next.B);
-    return L1L2STAB_OK;
+    s->camera = next.path_index == 0 ? l1l2_mat_identity() : l1l2_mat_mul(s->camera, next.F);
+    if (!is_displayable(&s->camera))
+        s->camera = l1l2_mat_identity();
+    s->smooth = l1l2_mat_mul(s->camera, next.B);
+    return next;
 }
 
 L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info)
 {
+    L1L2StabFrame target;
     if (!s)
         return L1L2STAB_ERR_ARGUMENT;
-    L1L2StabResult ready = readiness(s);
+    const L1L2StabResult ready = readiness(s);
     if (ready != L1L2STAB_OK)
         return ready;
-    if (out && (!planes_given(s, out) || !planes_given(s, &l1l2_frame_queue_at(&s->ring, 0)->frame)))
-        return L1L2STAB_ERR_ARGUMENT;
-    ready = fetch_path(s);
-    if (ready != L1L2STAB_OK)
-        return ready;
+    if (out) {
+        const L1L2StabResult result = l1l2_frame_read(out, &target, &s->cfg.logger);
+        if (result != L1L2STAB_OK)
+            return result;
+        if (!planes_given(s, &target) || !planes_given(s, &l1l2_frame_queue_at(&s->ring, 0)->frame))
+            return L1L2STAB_ERR_ARGUMENT;
+    }
+    const L1L2PathFrame next = fetch_path(s);
     const L1L2QueuedFrame *held = l1l2_frame_queue_at(&s->ring, 0);
-    const L1L2Mat stable = warp_map(s, &s->next.B, s->next.crop_ratio), untouched = l1l2_mat_identity();
-    const double bypass = l1l2_fade_next(&s->bypass, s->next.path_index == 0);
+    const L1L2Mat stable = warp_map(s, &next.B, next.crop_ratio), untouched = l1l2_mat_identity();
+    const double bypass = l1l2_fade_next(&s->bypass, next.path_index == 0);
     const L1L2Mat map = l1l2_mat_mix(&stable, &untouched, bypass);
     const int64_t start_ns = l1l2_clock_ns();
     double residual_px;
     const L1L2WarpMap bent = {.affine = map,
                               .mesh = l1l2_shutter_filter_mesh(s->wobble, &map, 1.0 - bypass, &residual_px)};
     if (out) {
-        l1l2_warp_render(s->warp, &bent, (const uint8_t *const *)held->frame.data, held->frame.stride, out->data,
-                         out->stride);
+        l1l2_warp_render(s->warp, &bent, (const uint8_t *const *)held->frame.data, held->frame.stride, target.data,
+                         target.stride);
         out->pts = held->frame.pts;
         out->opaque = held->frame.opaque;
     }
     if (info) {
-        l1l2_info_describe(info, held, &s->next, s->diagonal_px);
+        l1l2_info_describe(info, held, &next, s->diagonal_px);
         info->index = s->pulled;
         l1l2_info_export(&s->camera, s->diagonal_px, info->C);
         l1l2_info_export(&s->smooth, s->diagonal_px, info->P);
@@ -383,7 +409,6 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
         info->readout = l1l2_shutter_filter_readout(s->wobble);
         info->stage_ns[L1L2STAB_STAGE_WARP] = out ? l1l2_clock_ns() - start_ns : 0;
     }
-    s->decided = false;
     s->hurried -= s->hurried > 0;
     s->pulled++;
     l1l2_frame_queue_drop_oldest(&s->ring);

@@ -212,7 +212,7 @@ gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer,
     held->queue = &stream->held;
     g_queue_push_tail_link (held->queue, &held->link);
     gst_l1l2_stab_report_in (&stream->report);
-    return GST_FLOW_OK;
+    return flow (stream, l1l2stab_take_error (stream->stab));
   }
   held_frame_free (held);
   return flow (stream, result == L1L2STAB_AGAIN ? L1L2STAB_ERR_STATE : result);

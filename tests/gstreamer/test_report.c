@@ -67,7 +67,7 @@ assert_numbers (const GstStructure * frame, const L1L2StabInfo * info)
 GST_START_TEST (messages_report_what_the_library_reports_of_each_frame)
 {
   static const gchar *models[] = { "none", "identity", "predicted",
-    "translation", "similarity", "given", "affine"
+    "given", "translation", "similarity", "affine"
   };
   const GstClockTime base = 7 * GST_SECOND;
   GstHarness *h = stab_noise_harness_new (WINDOW);

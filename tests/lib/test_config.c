@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -88,6 +89,9 @@ START_TEST(every_field_out_of_range_is_refused_by_name)
     REFUSED(crop_ratio, 1.0);
     REFUSED(window, 3);
     REFUSED(window, 901);
+    REFUSED(window, INT_MIN); /* what depends on the window is not computed from it */
+    REFUSED(window, -1307841428);
+    REFUSED(window, INT_MAX);
     REFUSED(overlap, 2);
     REFUSED(overlap, 150);
     REFUSED(overlap, -3);
@@ -142,6 +146,31 @@ START_TEST(a_config_from_an_older_header_gets_defaults_for_what_it_lacks)
 }
 END_TEST
 
+START_TEST(a_config_from_a_newer_header_is_accepted_if_it_sets_nothing_new)
+{
+    struct {
+        L1L2StabConfig cfg;
+        unsigned char later[40];
+    } newer;
+    L1L2StabConfig resolved;
+    l1l2stab_config_init(&newer.cfg, sizeof newer); /* clears what this version does not know */
+    newer.cfg.format = L1L2STAB_FORMAT_I420;
+    newer.cfg.width = 640, newer.cfg.height = 360;
+    newer.cfg.logger.write = remember;
+    ck_assert_int_eq(l1l2_config_resolve(&newer.cfg, &resolved), L1L2STAB_OK);
+    ck_assert_uint_eq(resolved.struct_size, sizeof resolved);
+    newer.later[39] = 1;
+    last_message[0] = '\0';
+    ck_assert_int_eq(l1l2_config_resolve(&newer.cfg, &resolved), L1L2STAB_ERR_UNSUPPORTED);
+    ck_assert(strstr(last_message, "update the library"));
+    const size_t garbage[] = {0, 1, sizeof(size_t) - 1, 4097, 0xdeadbeef, (size_t)-1};
+    for (size_t i = 0; i < sizeof garbage / sizeof *garbage; i++) {
+        newer.cfg.struct_size = garbage[i];
+        ck_assert_int_eq(l1l2_config_resolve(&newer.cfg, &resolved), L1L2STAB_ERR_ARGUMENT);
+    }
+}
+END_TEST
+
 START_TEST(every_result_has_its_line)
 {
     for (int r = L1L2STAB_ERR_BACKEND; r <= L1L2STAB_EOS; r++)
@@ -163,6 +192,7 @@ int main(void)
     tcase_add_test(tcase, blend_wants_twice_the_overlap_in_the_window);
     tcase_add_test(tcase, the_output_size_follows_the_crop);
     tcase_add_test(tcase, a_config_from_an_older_header_gets_defaults_for_what_it_lacks);
+    tcase_add_test(tcase, a_config_from_a_newer_header_is_accepted_if_it_sets_nothing_new);
     tcase_add_test(tcase, every_result_has_its_line);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);

@@ -6,7 +6,7 @@
  *
  * Conventions
  *   Frames       t = 0, 1, 2, ... in the order of l1l2stab_push().
- *   Coordinates  pixels, origin at the frame's centre, x right, y down. Pixel centres lie at half-integers: the
+ *   Coordinates  pixels, origin at the frame's center, x right, y down. Pixel centers lie at half-integers: the
  *                frame is exactly [-W/2, W/2] x [-H/2, H/2].
  *   Matrices     3x3, row-major, act on column vectors (x, y, 1).
  *   Directions   F_t maps frame t to frame t-1; C_t = F_1 ... F_t (eq. 1); P_t = C_t B_t (eq. 2);
@@ -18,25 +18,34 @@
  *   l1l2stab_finish(). The library holds at most `window` frames. l1l2stab_hurry() lets frames go sooner.
  *
  * Threads
- *   Calls on one L1L2Stab must not overlap. Different instances are independent; there is no global state.
- *   The same frames and config give the same output, bit for bit, whatever `threads` is.
+ *   Calls on one L1L2Stab must not overlap; they may come from different threads one after the other. Different
+ *   instances are independent: there is no global state. The same frames and config give the same output, bit for bit,
+ *   whatever `threads` is.
+ *
+ * Errors
+ *   A call that returns an error < 0 has changed nothing, and the stream can go on. What one frame's measurement meets
+ *   (no memory) is an error of no call, because later calls find it: that frame starts a path,
+ *   L1L2STAB_INFO_MOTION_FAILED marks it, and l1l2stab_take_error() returns the error. No frame is lost.
+ *
+ * Growth
+ *   L1L2StabConfig and L1L2StabFrame grow at their ends and carry their size; L1L2StabInfo grows into its reserved
+ *   bytes. A program built against an older header of the same soname runs unchanged. While the major version is 0 the
+ *   soname is "0.MINOR": another minor version may break programs, and then has another soname.
  *
  * The loop (samples/1-stabilize-raw.c runs it)
  *
  *     L1L2StabResult r = L1L2STAB_OK;
- *     while (r >= 0 && read_frame(&in)) {
+ *     while (read_frame(&in)) {
  *         if ((r = l1l2stab_push(s, &in)) != L1L2STAB_OK) {
  *             drop_frame(&in);                          // still the caller's
  *             break;
  *         }
  *         while ((r = l1l2stab_pull(s, &out, NULL)) == L1L2STAB_OK)
- *             write_frame(&out);
+ *             write_frame(&out);                        // ends with L1L2STAB_AGAIN
  *     }
- *     if (r >= 0)
- *         r = l1l2stab_finish(s);
- *     while (r == L1L2STAB_OK)
- *         if ((r = l1l2stab_pull(s, &out, NULL)) == L1L2STAB_OK)
- *             write_frame(&out);                        // ends with L1L2STAB_EOS
+ *     l1l2stab_finish(s);                               // also after an error: what is held can still be pulled
+ *     while (l1l2stab_pull(s, &out, NULL) == L1L2STAB_OK)
+ *         write_frame(&out);                            // ends with L1L2STAB_EOS
  */
 #ifndef L1L2STAB_H
 #define L1L2STAB_H
@@ -56,9 +65,9 @@
 extern "C" {
 #endif
 
-/* meson.build reads these three. */
+/* Of this header; l1l2stab_version() tells the library's. meson.build reads these three. */
 #define L1L2STAB_VERSION_MAJOR 0
-#define L1L2STAB_VERSION_MINOR 1
+#define L1L2STAB_VERSION_MINOR 2
 #define L1L2STAB_VERSION_PATCH 0
 
 typedef struct L1L2Stab L1L2Stab;
@@ -72,12 +81,13 @@ typedef enum L1L2StabResult {
     L1L2STAB_ERR_STATE = -2,       /* the caller's: a call out of order, such as push after finish */
     L1L2STAB_ERR_UNSUPPORTED = -3, /* well-formed, but not offered; the log says what is */
     L1L2STAB_ERR_NOMEM = -4,       /* the system's: out of memory */
-    L1L2STAB_ERR_BACKEND = -5      /* ours: the imaging or solver library failed in a way with no fallback */
+    L1L2STAB_ERR_BACKEND = -5      /* the library's: the imaging or solver library failed with no fallback */
 } L1L2StabResult;
 
-/* Names, order of planes and layout are GStreamer's. Odd sizes: chroma planes are rounded up, packed 4:2:2 to pairs of
- * pixels. Alpha, and what X stands for, is warped like a colour. 10, 12, 16: bits a component, in two bytes at an even
- * address, the low one first; not offered where the processor has the high one first. */
+/* Names, order of planes and layout are GStreamer's. For odd frame sizes the sizes of chroma planes are rounded up, and
+ * packed 4:2:2 rows are rounded up to pairs of pixels. Alpha, and the byte that X stands for, is warped like a color.
+ * 10, 12 and 16 are the bits of a component. Such a component takes two bytes, the low one first; addresses of planes
+ * and strides must be even. These formats are not offered on big-endian processors. */
 typedef enum L1L2StabFormat {
     L1L2STAB_FORMAT_UNKNOWN = 0,
     L1L2STAB_FORMAT_GRAY8 = 1,
@@ -136,7 +146,7 @@ typedef enum L1L2StabFormat {
     L1L2STAB_FORMAT_AYUV64 = 54
 } L1L2StabFormat;
 
-/* Where a chroma sample lies within the luma samples that share it. Only subsampled directions look at it. */
+/* Where a chroma sample lies within the luma samples that share it. It matters in subsampled directions only. */
 typedef enum L1L2StabChromaSite {
     L1L2STAB_CHROMA_SITE_LEFT = 0,    /* on the left column, between the rows (MPEG-2, H.264, HEVC): the default */
     L1L2STAB_CHROMA_SITE_CENTER = 1,  /* between columns and rows (JPEG, MPEG-1) */
@@ -145,26 +155,26 @@ typedef enum L1L2StabChromaSite {
 
 /* How the paths of two windows are joined (paper, section 4.1). */
 typedef enum L1L2StabJoin {
-    L1L2STAB_JOIN_CONTINUOUS = 0, /* the next window goes on from the last three frames given out: no seam */
-    L1L2STAB_JOIN_BLEND = 1       /* eq. (8) with its weights put right: the overlap is averaged */
+    L1L2STAB_JOIN_CONTINUOUS = 0, /* the next window continues from the last three emitted frames: no seam */
+    L1L2STAB_JOIN_BLEND = 1       /* eq. (8), weights corrected: the overlap is averaged */
 } L1L2StabJoin;
 
-/* What F_t may be, and with it the camera path. */
+/* The model of F_t, and with it of the camera path. */
 typedef enum L1L2StabMotionModel {
-    L1L2STAB_MOTION_MODEL_TRANSLATION = 0, /* 2 parameters: the picture is moved, never turned or zoomed */
+    L1L2STAB_MOTION_MODEL_TRANSLATION = 0, /* 2 parameters: move; the picture is never turned or zoomed */
     L1L2STAB_MOTION_MODEL_SIMILARITY = 1,  /* 4: move, turn, zoom */
     L1L2STAB_MOTION_MODEL_AFFINE = 2       /* 6: also shear and zoom along one axis */
 } L1L2StabMotionModel;
 
-/* What is done about rolling shutters and wobble, the motion that a similarity leaves (paper, Algorithm 1, step 4). */
+/* How the rolling-shutter residual is removed: the motion that a similarity leaves (paper, Algorithm 1, step 4). */
 typedef enum L1L2StabRollingShutter {
     L1L2STAB_ROLLING_SHUTTER_NONE = 0,
     L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY = 1, /* one homography a frame */
-    L1L2STAB_ROLLING_SHUTTER_MIXTURE = 2     /* a homography for each row, and the camera's own skew where it shows */
+    L1L2STAB_ROLLING_SHUTTER_MIXTURE = 2     /* a homography for each row, and the skew that the camera's speed makes */
 } L1L2StabRollingShutter;
 
 typedef enum L1L2StabInterpolation {
-    L1L2STAB_INTERPOLATION_BILINEAR = 0, /* 2x2 taps: fast, soft, its sharpness pulses */
+    L1L2STAB_INTERPOLATION_BILINEAR = 0, /* 2x2 taps: fast and soft; sharpness varies with the subpixel position */
     L1L2STAB_INTERPOLATION_BICUBIC = 1,  /* 4x4 taps, a = -0.75 */
     L1L2STAB_INTERPOLATION_LANCZOS = 2   /* 6x6 taps, three lobes */
 } L1L2StabInterpolation;
@@ -174,47 +184,50 @@ typedef enum L1L2StabOutputSize {
     L1L2STAB_OUTPUT_SIZE_CROP = 1   /* the crop window's own size, rounded down to even numbers: no zoom */
 } L1L2StabOutputSize;
 
-/* Who solves eq. (4): for tests and the curious. */
+/* Which solver solves eq. (4): for tests and measurements. */
 typedef enum L1L2StabSolver {
-    L1L2STAB_SOLVER_AUTO = 0,      /* the predictor; where a window gives out several frames OSQP checks it */
+    L1L2STAB_SOLVER_AUTO = 0,      /* the predictor; OSQP checks it where a window emits 8 frames or more */
     L1L2STAB_SOLVER_CHECKED = 1,   /* the predictor, always checked by OSQP */
-    L1L2STAB_SOLVER_PREDICTOR = 2, /* the predictor; OSQP only where it does not arrive */
-    L1L2STAB_SOLVER_OSQP = 3       /* OSQP alone: far slower, and less exact */
+    L1L2STAB_SOLVER_PREDICTOR = 2, /* the predictor; OSQP only where it does not converge */
+    L1L2STAB_SOLVER_OSQP = 3       /* OSQP alone: much slower, and less exact */
 } L1L2StabSolver;
 
 typedef enum L1L2StabLogLevel {
-    L1L2STAB_LOG_ERROR = 1, /* an L1L2STAB_ERR_* follows */
+    L1L2STAB_LOG_ERROR = 1, /* a call returns an L1L2STAB_ERR_*, now or by l1l2stab_take_error() */
     L1L2STAB_LOG_WARN = 2,  /* output quality suffers */
-    L1L2STAB_LOG_INFO = 3,  /* once per life */
+    L1L2STAB_LOG_INFO = 3,  /* once per instance */
     L1L2STAB_LOG_DEBUG = 4, /* once per event */
     L1L2STAB_LOG_TRACE = 5  /* once per frame */
 } L1L2StabLogLevel;
 
+/* This struct does not grow: it lies within the config. More about logging goes to the config's end. */
 typedef struct L1L2StabLogger {
-    /* A finished message without newline, on the caller's thread. NULL: silent. */
+    /* Called with a finished message without newline, on the thread of the call that logs. Must not call the library
+     * with the same instance. NULL: silent. */
     void (*write)(void *cookie, L1L2StabLogLevel level, const char *message);
-    void *cookie;
+    void *cookie;               /* passed to write; must live as long as the instance */
     L1L2StabLogLevel max_level; /* more verbose messages are not even formatted; default L1L2STAB_LOG_INFO */
 } L1L2StabLogger;
 
-/* Adding a field? Append it, and extend l1l2stab_config_init() and the checks in config.c. */
+/* Initialize it with l1l2stab_config_init(), then set format, width, height and what shall differ from the defaults.
+ * To add a field, append it here and extend l1l2stab_config_init() and the checks in config.c. */
 typedef struct L1L2StabConfig {
-    size_t struct_size;            /* set by l1l2stab_config_init() */
+    size_t struct_size;            /* bytes; set by l1l2stab_config_init() */
     L1L2StabFormat format;         /* required */
     int width;                     /* pixels, [16, 16384], required */
     int height;                    /* pixels, [16, 16384], required */
     double frame_rate;             /* frames a second, [0, 1000]; 0 = unknown, taken as 30. Default 0 */
     L1L2StabChromaSite chroma_site; /* default LEFT */
-    double lambda;                 /* eq. (4), [0, 1000], default 0.5: 0.1 nearly pure L1, 2 follows the shake */
+    double lambda;                 /* eq. (4), [0, 1000], default 0.5: 0.1 is nearly pure L1, 2 follows the shake */
     double crop_ratio;             /* kept part of each side, [0.5, 0.99], default 0.9 */
-    int window;                    /* N, frames, [4, 900], default 150: look-ahead and delay */
-    int overlap;                   /* K, frames, [3, window), and 2K <= window for BLEND; 0 = by join. Default 0 */
+    int window;                    /* N, frames, [4, 900], default 150: the look-ahead and the delay */
+    int overlap;                   /* K, frames, [3, window), for BLEND 2K <= window; 0 = chosen by join. Default 0 */
     L1L2StabJoin join;             /* default CONTINUOUS */
     L1L2StabInterpolation interpolation; /* default BICUBIC */
     L1L2StabOutputSize output_size; /* default INPUT */
     int analysis_size;             /* longer side of the picture that is tracked, pixels, [128, 4096], default 640 */
-    int threads;                   /* that work, the caller's included, [0, 64]; 0 = one a core. Default 0 */
-    uint64_t seed;                 /* of RANSAC's draws. Default 1 */
+    int threads;                   /* including the caller's, [0, 64]; 0 = one per core. Default 0 */
+    uint64_t seed;                 /* of RANSAC's random samples. Default 1 */
     L1L2StabLogger logger;         /* default: silent */
     double weights[3];             /* of |DP|, |D2P|, |D3P|, (0, 1000]; default 1, 1, 1 (eq. 5); G2011 has 10, 1, 100 */
     L1L2StabSolver solver;         /* default AUTO */
@@ -225,77 +238,89 @@ typedef struct L1L2StabConfig {
 /* The path starts anew at this frame: nothing before it belongs to the same shot. */
 #define L1L2STAB_FRAME_DISCONT (1u << 0)
 
+/* A frame: to push(), the picture to stabilize; to pull(), the memory to render into. Clear it to zero and set what is
+ * needed. Fields are only ever added at the end. */
 typedef struct L1L2StabFrame {
-    uint8_t *data[4];    /* planes; only read from by push, only written to by pull; unused ones NULL */
-    ptrdiff_t stride[4]; /* bytes from row to row, may be negative */
-    int64_t pts;         /* the caller's; pull() gives it back with the same frame */
-    void *opaque;        /* ditto */
-    /* push only: called exactly once, when the library needs the pixels no longer. Never called if push() did not
-     * return OK. Must not call back into the library. May be NULL. */
+    /* sizeof(L1L2StabFrame), or 0 for the layout of version 0.2 (up to and including `motion`), so that a frame cleared
+     * to zero is valid. A size beyond what the library knows is accepted if the bytes that it does not know are 0. */
+    size_t struct_size;
+    uint8_t *data[4];    /* first row of each plane; push() only reads, pull() only writes; unused ones are ignored */
+    ptrdiff_t stride[4]; /* bytes from a row to the next, may be negative */
+    int64_t pts;         /* the caller's; pull() returns it with the same frame */
+    void *opaque;        /* the caller's; pull() returns it with the same frame */
+    /* push() only: called exactly once, by the pull, reset or free that no longer needs the pixels. Never called if
+     * push() did not return OK. Must not call the library with this instance. May be NULL. */
     void (*release)(void *opaque);
-    unsigned flags;      /* push only: L1L2STAB_FRAME_* */
-    /* push only: the frame's F_t (frame t to frame t-1, pixels, origin at the centre, 3x3 row-major, an invertible map
-     * of motion_model), where the caller knows it; it is read during the call. NULL: it is measured. With a motion,
-     * data may be NULL, and the frame can only be pulled with out = NULL. */
+    unsigned flags;      /* push() only: L1L2STAB_FRAME_* */
+    /* push() only: the frame's F_t, where the caller knows it; NULL: it is measured. Nine numbers as at the top of this
+     * file, in pixels, read during the call: a map of motion_model that is not mirrored, moves the frame's center by at
+     * most 10 diagonals, and stretches no direction by more than 2 or less than 1/2. A path's first frame has no
+     * motion: there it is checked and not used. With a motion, data may be NULL; the frame can then only be pulled
+     * with out = NULL. */
     const double *motion;
 } L1L2StabFrame;
 
-/* Which model of the inter-frame motion was used. */
+/* Where a frame's motion F_t came from. The measured ones come last, in the order of L1L2StabMotionModel. */
 typedef enum L1L2StabMotionSource {
     L1L2STAB_MOTION_SOURCE_NONE = 0,        /* a path's first frame: there is no motion */
-    L1L2STAB_MOTION_SOURCE_IDENTITY = 1,    /* nothing could be measured: taken as still */
-    L1L2STAB_MOTION_SOURCE_PREDICTED = 2,   /* nothing could be measured: the motion before it, fading */
-    L1L2STAB_MOTION_SOURCE_TRANSLATION = 3, /* too few points for more */
-    L1L2STAB_MOTION_SOURCE_SIMILARITY = 4,
-    L1L2STAB_MOTION_SOURCE_GIVEN = 5,       /* L1L2StabFrame.motion */
-    L1L2STAB_MOTION_SOURCE_AFFINE = 6
+    L1L2STAB_MOTION_SOURCE_IDENTITY = 1,    /* nothing could be measured: the camera is taken as still */
+    L1L2STAB_MOTION_SOURCE_PREDICTED = 2,   /* nothing could be measured: the last motion goes on and fades */
+    L1L2STAB_MOTION_SOURCE_GIVEN = 3,       /* from the caller: L1L2StabFrame.motion */
+    L1L2STAB_MOTION_SOURCE_TRANSLATION = 4, /* measured; too few points for more parameters */
+    L1L2STAB_MOTION_SOURCE_SIMILARITY = 5,  /* measured */
+    L1L2STAB_MOTION_SOURCE_AFFINE = 6       /* measured */
 } L1L2StabMotionSource;
 
 #define L1L2STAB_INFO_PATH_START (1u << 0)    /* first frame of a path */
 #define L1L2STAB_INFO_MOTION_LOST (1u << 1)   /* the motion into this frame was not measured */
 #define L1L2STAB_INFO_PATH_FALLBACK (1u << 2) /* the solver did not converge: a feasible path was held instead */
 #define L1L2STAB_INFO_EARLY (1u << 3)         /* l1l2stab_hurry() decided the frame: its look-ahead was shorter */
+#define L1L2STAB_INFO_MOTION_FAILED (1u << 4) /* measuring met an error (l1l2stab_take_error()): a path starts here */
 
-/* Where a frame's time went. */
+/* The stages that a frame's time is spent in. */
 typedef enum L1L2StabStage {
-    L1L2STAB_STAGE_SCALE = 0, /* to the analysed size, pyramid */
+    L1L2STAB_STAGE_SCALE = 0, /* scaling to the analyzed size, pyramid */
     L1L2STAB_STAGE_TRACK = 1, /* corners and Lucas-Kanade */
     L1L2STAB_STAGE_FIT = 2,   /* RANSAC and least squares */
-    L1L2STAB_STAGE_SOLVE = 3, /* eq. (4); all on the first frame of what a window gives out */
+    L1L2STAB_STAGE_SOLVE = 3, /* eq. (4); counted on the oldest held frame when a window is solved */
     L1L2STAB_STAGE_WARP = 4,
-    L1L2STAB_STAGE_COUNT = 5
+    L1L2STAB_STAGE_COUNT = 5  /* stages so far; a later version may add some, up to 8 */
 } L1L2StabStage;
 
-/* What was measured of a frame and done to it. Matrices as at the top of this file, in pixels. */
+/* What was measured of a frame and done to it. pull() writes all of it and reads none of it, so it needs no
+ * initialization. Matrices as at the top of this file, in pixels. */
 typedef struct L1L2StabInfo {
     uint64_t index;      /* the frame's number since create or reset, from 0 */
     uint64_t path_index; /* the frame's number in its path, from 0 */
-    double F[9];         /* measured motion: frame t to frame t-1; identity at a path's first frame */
+    double F[9];         /* motion, frame t to frame t-1, that the path is made of; identity at a path's first frame.
+                          * Whoever gives it back as L1L2StabFrame.motion gets the same path, bit for bit. */
     double B[9];         /* update transform: crop window to frame t */
-    double S[9];         /* smooth step P_{t-1}^-1 P_t: what is left of the motion; identity at a path's first frame */
-    double C[9];         /* camera path relative to the path's first frame; accumulated, for display */
-    double P[9];         /* smoothed path, ditto */
-    double warp[9];      /* output pixel to source pixel, origins at the centres: what was rendered */
-    double lambda;       /* that the frame was given */
-    double crop_ratio;   /* that the frame had, on the way to what was set where that changed */
+    double S[9];         /* smooth step P_{t-1}^-1 P_t: the motion that is left; identity at a path's first frame */
+    double C[9];         /* camera path, for display: accumulated from F, relative to the path's first frame. Always
+                          * finite: beyond a million diagonals or a zoom of a million it starts again at this frame. */
+    double P[9];         /* smoothed path C B, for display */
+    double warp[9];      /* output pixel to source pixel, origins at the centers: what was rendered */
+    double lambda;       /* value that this frame was pushed with */
+    double crop_ratio;   /* value in effect for this frame; after a change it ramps to the new setting */
     int tracks;          /* points that were tracked into this frame and passed the backward check */
-    int inliers;         /* of these, consistent with F */
+    int inliers;         /* of these, points that agree with F */
     int solver_iterations; /* of the window that this frame came from */
-    L1L2StabMotionSource model;
+    L1L2StabMotionSource model; /* where F came from */
     unsigned flags;      /* L1L2STAB_INFO_* */
-    int64_t stage_ns[L1L2STAB_STAGE_COUNT]; /* time spent, by stage */
+    int64_t stage_ns[8]; /* time spent, by L1L2StabStage; the rest is 0 */
     /* Of the window that this frame came from: */
-    L1L2StabSolver solver;  /* who decided: PREDICTOR, OSQP, or CHECKED where both agree */
+    L1L2StabSolver solver;  /* which solver decided: PREDICTOR, OSQP, or CHECKED where both agree */
     double solver_bound;    /* the objective is at most this far above its optimum; infinite for OSQP alone */
     double solver_residual[2]; /* OSQP's primal and dual residual; 0 where it did not run */
-    double quality;          /* of F, [0, 1]: 0 not measured, 1 all over the frame the points agree */
+    double quality;          /* of F, [0, 1]: 0 not measured, 1 where points all over the frame agree */
     double bypass;           /* of what was rendered, [0, 1]: 0 stabilized, 1 untouched */
-    double residual;         /* the longest way that a sample was moved against the rolling shutter, pixels */
-    double readout;          /* first row to last, frames, as far as it shows; < 0: from below; 0: none */
-    uint8_t reserved[32];
+    double residual;         /* rolling-shutter correction: the longest way that a sample was moved by it, pixels */
+    double readout;          /* time from the first row to the last, frames, as estimated; < 0: bottom row first;
+                              * 0: not known */
+    uint8_t reserved[256];   /* 0; later versions put further fields here and keep the struct's size */
 } L1L2StabInfo;
 
-/* Fill *cfg with the defaults; pass sizeof *cfg, so that a program built against an older header goes on working. */
+/* Fills *cfg with the defaults. Pass sizeof *cfg, so that a program built against an older header goes on working. */
 L1L2STAB_API void l1l2stab_config_init(L1L2StabConfig *cfg, size_t struct_size);
 
 /* The delay that this config implies, in frames: its window. An error < 0 if the config is not valid. */
@@ -304,64 +329,74 @@ L1L2STAB_API int l1l2stab_config_delay(const L1L2StabConfig *cfg);
 /* The size in pixels of what pull() writes. An error if the config is not valid; then *width and *height are 0. */
 L1L2STAB_API L1L2StabResult l1l2stab_config_output_size(const L1L2StabConfig *cfg, int *width, int *height);
 
-/* cfg need only live during the call, the logger's cookie as long as the instance. On error *out is NULL and the
- * reason has been logged. */
+/* Creates an instance; free it with l1l2stab_free(). cfg need only live during the call, the logger's cookie as long as
+ * the instance. On error *out is NULL and the reason has been logged. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_create(L1L2Stab **out, const L1L2StabConfig *cfg);
 
-/* Hand over the next frame. Its motion is measured, with `threads` > 1 beside the caller: tracking of this frame and
- * rendering of the one that is pulled next overlap.
+/* Hands over the next frame. Its motion is measured; with `threads` > 1 this goes on after the call, so that tracking
+ * this frame and rendering the one that is pulled next overlap.
  * OK: the library reads in->data until it calls in->release. AGAIN: `window` frames are held, pull first.
- * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. The error may be
- * that of the frame before, whose motion was not to be had: the next call tells it, once; that frame starts a path. */
+ * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in);
 
-/* lambda and crop_ratio of the frames that are pushed from now on; ranges as in the config. The crop moves
- * by at most 0.005 a frame, so the picture does not jump; output_size CROP keeps the config's size. */
+/* The first error that measuring met since this was asked last: ERR_NOMEM or ERR_BACKEND, or OK if there was none. It
+ * is that of a frame that push() had accepted. That frame is not lost: it starts a path, and its info has
+ * L1L2STAB_INFO_MOTION_FAILED. Does not wait: the error of the newest frame is known after the next push() or
+ * finish(). reset() forgets it. */
+L1L2STAB_API L1L2StabResult l1l2stab_take_error(L1L2Stab *s);
+
+/* Set lambda and crop_ratio of the frames that are pushed from now on, also after a reset(); ranges as in the config.
+ * The crop ratio changes by at most 0.005 a frame, so that the picture does not jump; a path that starts has the new
+ * one at once. With output_size CROP the output keeps the size that the config gave it. */
 L1L2STAB_API L1L2StabResult l1l2stab_set_lambda(L1L2Stab *s, double lambda);
 L1L2STAB_API L1L2StabResult l1l2stab_set_crop_ratio(L1L2Stab *s, double crop_ratio);
 
 /* bypass != 0: the frames that are pulled from now on come out untouched, in spite of the delay; 0: stabilized again.
- * The picture passes over within L1L2STAB_BYPASS_FRAMES frames, or at once where a path starts, and stays inside the
- * source on the way. Beneath it the path goes on. Untouched is the whole frame; with output_size CROP its middle. */
+ * The picture changes over L1L2STAB_BYPASS_FRAMES frames, or at once where a path starts, and stays inside the source
+ * on the way. The path goes on unseen. Untouched is the whole frame; with output_size CROP its middle. */
 #define L1L2STAB_BYPASS_FRAMES 30
 L1L2STAB_API L1L2StabResult l1l2stab_set_bypass(L1L2Stab *s, int bypass);
 
-/* Which frame would pull() give next? OK sets *pts and *opaque (each may be NULL); else as pull(). */
+/* Which frame would pull() return next? OK sets *pts and *opaque (each may be NULL); otherwise as pull(). */
 L1L2STAB_API L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque);
 
-/* Render the oldest frame that is ready into the caller's planes, and release it.
- * out: data and stride are read, pts and opaque are set (opaque of a frame with a release function is gone by then);
- * NULL: nothing is rendered, for those who want the numbers alone. info: may be NULL.
- * AGAIN: push more, or finish. EOS: finished and drained. Error: the frame remains queued. */
+/* Renders the oldest frame that is ready into the caller's planes, and releases it.
+ * out: struct_size, data and stride are read, pts and opaque are set (opaque of a frame with a release function has
+ * been released by then); NULL: nothing is rendered, for callers who want the numbers alone. info: may be NULL.
+ * AGAIN: push more, or finish. EOS: finished, and every frame has been pulled. An error is the caller's alone (out
+ * lacks a plane, or the frame was pushed without pixels): the frame remains queued. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info);
 
-/* No more input: what is held can be pulled until EOS. reset() starts anew. */
+/* Ends the input: what is held can be pulled until EOS, and reset() starts anew. Always OK unless s is NULL; calling it
+ * again does nothing. */
 L1L2STAB_API L1L2StabResult l1l2stab_finish(L1L2Stab *s);
 
-/* For a source that is late: the `frames` oldest of the held frames (all, if fewer are held) can be pulled from now on.
- * What later windows would have decided is decided by the frames that have come: with a shorter look-ahead, smoothly
- * joined to the frames before, inside the source as ever. The frames pushed afterwards wait for their whole window
- * again. Costs a solve where it decides a frame; it can be called as often as frames are due. 0 does nothing. */
+/* For a source that is late: the `frames` oldest held frames (all, if fewer are held) can be pulled from now on. They
+ * are decided by the frames that have come: with a shorter look-ahead, smoothly joined to the frames before, and inside
+ * the source as always. The frames pushed afterwards wait for their whole window again. Costs a solve where it decides
+ * a frame; it can be called as often as frames are due. 0 does nothing. ERR_ARGUMENT: frames < 0. */
 L1L2STAB_API L1L2StabResult l1l2stab_hurry(L1L2Stab *s, int frames);
 
-/* Drop everything held (releasing it) and forget the path; config and memory are kept. Afterwards the instance is as
- * good as new: the same frames give the same output. */
+/* Drops everything held (releasing it) and forgets frames, path and pending error. What the caller set stays: the
+ * config, and lambda, crop ratio and bypass as they were set last. They are in full effect from the first frame on,
+ * without the gradual change. So the output is that of a new instance on which the same setters were called before the
+ * first push. */
 L1L2STAB_API void l1l2stab_reset(L1L2Stab *s);
 
-/* Free (releasing what is held) and set *s to NULL; NULL and &NULL are fine. */
+/* Frees the instance (releasing what is held) and sets *s to NULL; NULL and &NULL are fine. */
 L1L2STAB_API void l1l2stab_free(L1L2Stab **s);
 
-/* One line on a result: whose fault it is and what to do. Never NULL, never to be freed. */
+/* One line about a result: whose fault it is and what to do. Never NULL, never to be freed. */
 L1L2STAB_API const char *l1l2stab_strerror(L1L2StabResult result);
 
-/* How many threads work on a frame, the caller's included; 0 for NULL. */
+/* How many threads work on a frame, including the caller's; 0 for NULL. */
 L1L2STAB_API int l1l2stab_threads(const L1L2Stab *s);
 
-/* The instruction set that the warp's inner loops are made for on this processor: "avx2", or "none" for plain C. The
- * pictures are the same. Never NULL, never to be freed. */
+/* The instruction set that the warp's inner loops use on this processor: "avx2", or "none" for plain C. The pictures
+ * are the same. Never NULL, never to be freed. */
 L1L2STAB_API const char *l1l2stab_simd(void);
 
-/* "major.minor.patch" of the library that runs. */
+/* "major.minor.patch" of the library that runs. Never to be freed. */
 L1L2STAB_API const char *l1l2stab_version(void);
 
 #ifdef __cplusplus

@@ -117,6 +117,16 @@ L1L2Mat l1l2_mat_mix(const L1L2Mat *a, const L1L2Mat *b, double weight)
     return out;
 }
 
+/* [a b; c d] is the sum of a similarity, which stretches by |(a+d, c-b)| / 2, and of a mirrored one, which stretches by
+ * |(a-d, c+b)| / 2. In one direction the two add up, and across it they subtract. */
+void l1l2_mat_stretch(const L1L2Mat *m, double *most, double *least)
+{
+    const double *v = m->m;
+    const double similarity = hypot(v[0] + v[4], v[3] - v[1]) / 2.0, mirrored = hypot(v[0] - v[4], v[3] + v[1]) / 2.0;
+    *most = similarity + mirrored;
+    *least = similarity - mirrored;
+}
+
 static int along(double at, double half, int cells)
 {
     const double cell = floor((at / half + 1.0) * 0.5 * cells);

@@ -2,7 +2,7 @@
 /*
  * Plane geometry: 3x3 maps on doubles. The conventions of the whole library live here.
  *
- *   Origin     the frame's centre; x right, y down.
+ *   Origin     the frame's center; x right, y down.
  *   Unit       inside the library: the frame's diagonal, so that lambda means the same at every resolution.
  *              At the public header: pixels. l1l2_mat_rescale() converts.
  *   Pixels     centres at half-integers: the frame is exactly [-W/2, W/2] x [-H/2, H/2] px.
@@ -65,6 +65,10 @@ L1L2Mat l1l2_mat_rescale(L1L2Mat m, double factor);
 /* (1 - weight) a + weight b, element by element; exact at 0 and 1. Where a and b take a point into a convex set, so
  * does this: affine maps, and projective ones with m[8] = 1 and a positive denominator there. */
 L1L2Mat l1l2_mat_mix(const L1L2Mat *a, const L1L2Mat *b, double weight);
+
+/* The singular values of m's linear part: by how much it stretches the direction that it stretches most, and least.
+ * *least is negative where m mirrors. */
+void l1l2_mat_stretch(const L1L2Mat *m, double *most, double *least);
 
 /* Which of columns x rows cells of the frame p lies in, row by row; points outside count to the nearest. */
 int l1l2_cell_of(L1L2Point p, double half_w, double half_h, int columns, int rows);

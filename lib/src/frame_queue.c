@@ -5,43 +5,69 @@
 
 #include "common/mem.h"
 
-bool l1l2_frame_queue_init(L1L2FrameQueue *ring, int capacity)
+_Static_assert((int)L1L2_PATH_PAST <= (int)L1L2_FRAME_QUEUE_PAST, "the path looks back on more than is kept");
+
+static L1L2QueuedFrame *record_of(const L1L2FrameQueue *queue, int64_t t)
 {
-    *ring = (L1L2FrameQueue){.items = l1l2_mem_new((size_t)capacity, sizeof *ring->items), .capacity = capacity};
-    return ring->items != NULL;
+    assert(t >= queue->begin && t < queue->end);
+    return &queue->records[t % queue->rows];
 }
 
-void l1l2_frame_queue_clear(L1L2FrameQueue *ring)
+bool l1l2_frame_queue_init(L1L2FrameQueue *queue, int capacity)
 {
-    l1l2_frame_queue_drop_all(ring);
-    l1l2_mem_free(ring->items);
-    *ring = (L1L2FrameQueue){0};
+    const int rows = capacity + L1L2_FRAME_QUEUE_PAST;
+    *queue = (L1L2FrameQueue){.records = l1l2_mem_new((size_t)rows, sizeof *queue->records), .capacity = capacity,
+                              .rows = rows};
+    return queue->records != NULL;
 }
 
-void l1l2_frame_queue_drop_all(L1L2FrameQueue *ring)
+void l1l2_frame_queue_clear(L1L2FrameQueue *queue)
 {
-    while (ring->count > 0)
-        l1l2_frame_queue_drop_oldest(ring);
+    l1l2_frame_queue_reset(queue);
+    l1l2_mem_free(queue->records);
+    *queue = (L1L2FrameQueue){0};
 }
 
-L1L2QueuedFrame *l1l2_frame_queue_append(L1L2FrameQueue *ring)
+void l1l2_frame_queue_reset(L1L2FrameQueue *queue)
 {
-    assert(ring->count < ring->capacity);
-    ring->count++;
-    return l1l2_frame_queue_at(ring, ring->count - 1);
+    while (queue->begin < queue->end)
+        l1l2_frame_queue_drop_oldest(queue);
+    queue->begin = queue->end = 0;
 }
 
-L1L2QueuedFrame *l1l2_frame_queue_at(const L1L2FrameQueue *ring, int index)
+int l1l2_frame_queue_count(const L1L2FrameQueue *queue)
 {
-    assert(index >= 0 && index < ring->count);
-    return &ring->items[(ring->oldest + index) % ring->capacity];
+    return (int)(queue->end - queue->begin);
 }
 
-void l1l2_frame_queue_drop_oldest(L1L2FrameQueue *ring)
+L1L2QueuedFrame *l1l2_frame_queue_append(L1L2FrameQueue *queue)
 {
-    const L1L2StabFrame frame = l1l2_frame_queue_at(ring, 0)->frame;
-    ring->oldest = (ring->oldest + 1) % ring->capacity;
-    ring->count--;
+    assert(l1l2_frame_queue_count(queue) < queue->capacity);
+    queue->end++;
+    L1L2QueuedFrame *record = l1l2_frame_queue_newest(queue);
+    *record = (L1L2QueuedFrame){0};
+    return record;
+}
+
+L1L2QueuedFrame *l1l2_frame_queue_oldest(const L1L2FrameQueue *queue)
+{
+    return record_of(queue, queue->begin);
+}
+
+L1L2QueuedFrame *l1l2_frame_queue_newest(const L1L2FrameQueue *queue)
+{
+    return record_of(queue, queue->end - 1);
+}
+
+void l1l2_frame_queue_drop_oldest(L1L2FrameQueue *queue)
+{
+    const L1L2StabFrame frame = l1l2_frame_queue_oldest(queue)->frame;
+    queue->begin++;
     if (frame.release)
         frame.release(frame.opaque);
+}
+
+L1L2FrameColumn l1l2_frame_queue_path_frames(const L1L2FrameQueue *queue)
+{
+    return (L1L2FrameColumn){&queue->records[0].path, sizeof *queue->records, queue->rows};
 }

@@ -1,42 +1,63 @@
 /* SPDX-License-Identifier: MIT */
-/* The frames that are held: a queue of fixed capacity that gives each frame back to its owner exactly once. */
+/*
+ * The frames that are held, one record each: all that is known of a frame from push to pull, in one place. The queue
+ * has a fixed capacity and gives each frame back to its owner exactly once.
+ *
+ * Frames are numbered from 0 since create or reset. The camera path works on its field of these records
+ * (common/frame_column.h). It looks back on a few frames that have been pulled, so the numbers of those stay.
+ */
 #ifndef L1L2_FRAME_QUEUE_H
 #define L1L2_FRAME_QUEUE_H
 
 #include <stdbool.h>
 
+#include "common/frame_column.h"
 #include "motion/motion.h"
+#include "path/path.h"
 
 typedef struct L1L2QueuedFrame {
-    L1L2StabFrame frame;
-    L1L2MotionResult motion;
-    double F_px[9]; /* the motion in pixels */
-    double lambda, crop_ratio; /* as they were when the frame was pushed */
-    int64_t solve_ns;
-    bool failed; /* its motion could not be measured, by an error */
+    L1L2StabFrame frame;         /* the caller's */
+    double lambda, crop_ratio;   /* as they were set when the frame was pushed */
+    L1L2StabMotionSource source; /* of path.F */
+    int tracks, inliers;
+    double quality;
+    bool failed;                 /* measuring met an error */
+    L1L2PathFrame path;          /* motion F, in diagonals, and what the path makes of it */
+    int64_t scale_ns, track_ns, fit_ns, solve_ns;
 } L1L2QueuedFrame;
 
 typedef struct L1L2FrameQueue {
-    L1L2QueuedFrame *items;
-    int capacity, oldest, count;
+    L1L2QueuedFrame *records; /* frame t is at t modulo rows */
+    int capacity;             /* frames that can be held */
+    int rows;                 /* these, and the past ones whose numbers stay */
+    int64_t begin, end;       /* held are the frames t with begin <= t < end */
 } L1L2FrameQueue;
 
+enum { L1L2_FRAME_QUEUE_PAST = 8 }; /* pulled frames whose numbers stay */
+
 /* False when out of memory. */
-bool l1l2_frame_queue_init(L1L2FrameQueue *ring, int capacity);
+bool l1l2_frame_queue_init(L1L2FrameQueue *queue, int capacity);
 
-/* Releases what is held and frees the memory; fine on a zeroed ring. */
-void l1l2_frame_queue_clear(L1L2FrameQueue *ring);
+/* Releases what is held and frees the memory; fine on a zeroed queue. */
+void l1l2_frame_queue_clear(L1L2FrameQueue *queue);
 
-/* Releases what is held. */
-void l1l2_frame_queue_drop_all(L1L2FrameQueue *ring);
+/* Releases what is held; numbers begin at 0 again. */
+void l1l2_frame_queue_reset(L1L2FrameQueue *queue);
 
-/* The new last item, to be filled in by the caller; the ring must not be full. */
-L1L2QueuedFrame *l1l2_frame_queue_append(L1L2FrameQueue *ring);
+/* How many frames are held. */
+int l1l2_frame_queue_count(const L1L2FrameQueue *queue);
 
-/* index 0: the oldest. */
-L1L2QueuedFrame *l1l2_frame_queue_at(const L1L2FrameQueue *ring, int index);
+/* The record of a new last frame, cleared to zero; the queue must not be full. It stays where it is. */
+L1L2QueuedFrame *l1l2_frame_queue_append(L1L2FrameQueue *queue);
+
+/* One must be held. */
+L1L2QueuedFrame *l1l2_frame_queue_oldest(const L1L2FrameQueue *queue);
+L1L2QueuedFrame *l1l2_frame_queue_newest(const L1L2FrameQueue *queue);
 
 /* Releases the oldest frame. */
-void l1l2_frame_queue_drop_oldest(L1L2FrameQueue *ring);
+void l1l2_frame_queue_drop_oldest(L1L2FrameQueue *queue);
+
+/* The field of all frames that the path works on. */
+L1L2FrameColumn l1l2_frame_queue_path_frames(const L1L2FrameQueue *queue);
 
 #endif

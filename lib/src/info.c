@@ -1,41 +1,43 @@
 /* SPDX-License-Identifier: MIT */
 #include "info.h"
 
-#include <string.h>
+#include "units.h"
 
-void l1l2_info_export(const L1L2Mat *m, double diagonal_px, double px[9])
+static unsigned flags_of(const L1L2QueuedFrame *record)
 {
-    const L1L2Mat scaled = l1l2_mat_rescale(*m, diagonal_px);
-    memcpy(px, scaled.m, sizeof scaled.m);
+    unsigned flags = 0;
+    if (record->path.path_index == 0)
+        flags |= L1L2STAB_INFO_PATH_START;
+    if (record->source == L1L2STAB_MOTION_SOURCE_IDENTITY || record->source == L1L2STAB_MOTION_SOURCE_PREDICTED)
+        flags |= L1L2STAB_INFO_MOTION_LOST;
+    if (record->failed)
+        flags |= L1L2STAB_INFO_MOTION_FAILED | L1L2STAB_INFO_MOTION_LOST;
+    if (record->path.fallback)
+        flags |= L1L2STAB_INFO_PATH_FALLBACK;
+    if (record->path.early)
+        flags |= L1L2STAB_INFO_EARLY;
+    return flags;
 }
 
-void l1l2_info_describe(L1L2StabInfo *info, const L1L2QueuedFrame *held, const L1L2PathFrame *f, double diagonal_px)
+void l1l2_info_describe(L1L2StabInfo *info, const L1L2QueuedFrame *record, double diagonal_px)
 {
+    const L1L2PathFrame *path = &record->path;
     *info = (L1L2StabInfo){
-        .path_index = f->path_index,
-        .lambda = f->lambda,
-        .crop_ratio = f->crop_ratio,
-        .tracks = held->motion.tracks,
-        .inliers = held->motion.inliers,
-        .quality = held->motion.quality,
-        .solver_iterations = f->report.predictor_iterations + f->report.osqp_iterations,
-        .solver = f->report.decided_by,
-        .solver_bound = f->report.bound,
-        .solver_residual = {f->report.osqp_primal_residual, f->report.osqp_dual_residual},
-        .model = held->motion.model,
-        .stage_ns = {held->motion.scale_ns, held->motion.track_ns, held->motion.fit_ns, held->solve_ns, 0},
+        .path_index = path->path_index,
+        .lambda = path->lambda,
+        .crop_ratio = path->crop_ratio,
+        .tracks = record->tracks,
+        .inliers = record->inliers,
+        .quality = record->quality,
+        .solver_iterations = path->report.predictor_iterations + path->report.osqp_iterations,
+        .solver = path->report.decided_by,
+        .solver_bound = path->report.bound,
+        .solver_residual = {path->report.osqp_primal_residual, path->report.osqp_dual_residual},
+        .model = record->source,
+        .flags = flags_of(record),
+        .stage_ns = {record->scale_ns, record->track_ns, record->fit_ns, record->solve_ns},
     };
-    memcpy(info->F, held->F_px, sizeof held->F_px);
-    l1l2_info_export(&f->B, diagonal_px, info->B);
-    l1l2_info_export(&f->S, diagonal_px, info->S);
-    if (f->path_index == 0)
-        info->flags |= L1L2STAB_INFO_PATH_START;
-    if (info->model == L1L2STAB_MOTION_SOURCE_IDENTITY || info->model == L1L2STAB_MOTION_SOURCE_PREDICTED)
-        info->flags |= L1L2STAB_INFO_MOTION_LOST;
-    if (held->failed)
-        info->flags |= L1L2STAB_INFO_MOTION_FAILED | L1L2STAB_INFO_MOTION_LOST;
-    if (f->fallback)
-        info->flags |= L1L2STAB_INFO_PATH_FALLBACK;
-    if (f->early)
-        info->flags |= L1L2STAB_INFO_EARLY;
+    l1l2_units_export_motion(&path->F, diagonal_px, info->F);
+    l1l2_units_export(&path->B, diagonal_px, info->B);
+    l1l2_units_export(&path->S, diagonal_px, info->S);
 }

@@ -2,11 +2,13 @@
 /*
  * The public entry points and the state machine: Algorithm 1, one frame at a time.
  *
- *   push    motion.c: steps 1 and 2a, F_t, beside the caller: analysis.c
- *           path.c: steps 2b and 3, C_t and B_t, once the motion is there: settle()
- *   pull    wobble.c: step 4, warp.c: step 5
+ *   push    motion/worker.c: steps 1 and 2a, the motion F_t, beside the caller
+ *           path/path.c: steps 2b and 3, C_t and B_t, once the motion is known: settle()
+ *   pull    rolling_shutter/filter.c: step 4, warp/warp.c: step 5
  *
- * States: open -> finished (finish) -> open (reset). Frames wait in the ring from push to pull.
+ * States: open -> finished (finish) -> open (reset). A frame waits in the queue from push to pull. Its record there has
+ * all that is known of it. Motions are in diagonals from the moment that they are known; units.h converts for the
+ * caller.
  */
 #include <assert.h>
 #include <math.h>
@@ -23,31 +25,33 @@
 #include "motion/worker.h"
 #include "path/path.h"
 #include "rolling_shutter/filter.h"
+#include "units.h"
 #include "warp/warp.h"
 
 struct L1L2Stab {
     L1L2StabConfig cfg;
     const L1L2FormatInfo *format;
     int out_width, out_height;
+    double diagonal_px;
     L1L2Pool *pool;
-    L1L2MotionWorker *analysis;
+    L1L2MotionWorker *worker;
     L1L2Path *path;
-    L1L2ShutterFilter *wobble;
+    L1L2ShutterFilter *filter;
     L1L2Warp *warp;
-    L1L2FrameQueue ring;
+    L1L2FrameQueue queue;
     bool finished;
-    int hurried;              /* of the held frames, the oldest, which are ready whatever comes */
-    uint64_t pulled;          /* frames since create or reset */
-    L1L2Mat camera, smooth;   /* C_t and P_t of the last pulled frame relative to its path's first: for display only */
+    int hurried;               /* of the held frames, the oldest, which are ready whatever comes */
+    L1L2StabResult error;      /* the first that measuring met and l1l2stab_take_error() has not returned */
+    L1L2Mat camera, smooth;    /* C_t and P_t of the frame pulled last relative to its path's first: for display only */
     L1L2Fade bypass;
     double lambda, crop_ratio; /* of the frames that are pushed from now on */
-    L1L2StabResult error;     /* the first that measuring met and l1l2stab_take_error() has not returned */
-    double diagonal_px;
 };
 
 static L1L2StabResult build(L1L2Stab *s)
 {
     const L1L2StabConfig *cfg = &s->cfg;
+    if (!s->pool || !l1l2_frame_queue_init(&s->queue, cfg->window))
+        return L1L2STAB_ERR_NOMEM;
     const L1L2MotionConfig motion = {
         .format = s->format,
         .width = cfg->width,
@@ -61,9 +65,7 @@ static L1L2StabResult build(L1L2Stab *s)
     const L1L2PathConfig path = {
         .width = cfg->width,
         .height = cfg->height,
-        .lambda = cfg->lambda,
         .frame_rate = cfg->frame_rate,
-        .crop_ratio = cfg->crop_ratio,
         .window = cfg->window,
         .overlap = cfg->overlap,
         .join = cfg->join,
@@ -71,6 +73,7 @@ static L1L2StabResult build(L1L2Stab *s)
         .solver = cfg->solver,
         .weights = {cfg->weights[0], cfg->weights[1], cfg->weights[2]},
         .log = &cfg->logger,
+        .frames = l1l2_frame_queue_path_frames(&s->queue),
     };
     const L1L2WarpConfig warp = {
         .format = s->format,
@@ -82,17 +85,15 @@ static L1L2StabResult build(L1L2Stab *s)
         .interpolation = cfg->interpolation,
         .pool = s->pool,
     };
-    const L1L2ShutterFilterConfig wobble = {cfg->rolling_shutter, cfg->width, cfg->height,
+    const L1L2ShutterFilterConfig filter = {cfg->rolling_shutter, cfg->width, cfg->height,
                                      s->out_width, s->out_height, cfg->window};
-    if (!s->pool || !l1l2_frame_queue_init(&s->ring, cfg->window))
-        return L1L2STAB_ERR_NOMEM;
-    L1L2StabResult result = l1l2_motion_worker_create(&s->analysis, &motion, s->pool);
+    L1L2StabResult result = l1l2_motion_worker_create(&s->worker, &motion, s->pool);
     if (result == L1L2STAB_OK)
         result = l1l2_path_create(&s->path, &path);
     if (result == L1L2STAB_OK)
         result = l1l2_warp_create(&s->warp, &warp);
     if (result == L1L2STAB_OK)
-        result = l1l2_shutter_filter_create(&s->wobble, &wobble);
+        result = l1l2_shutter_filter_create(&s->filter, &filter);
     return result;
 }
 
@@ -131,10 +132,10 @@ void l1l2stab_free(L1L2Stab **s)
 {
     if (!s || !*s)
         return;
-    l1l2_motion_worker_free((*s)->analysis); /* it may be reading a frame */
-    l1l2_frame_queue_clear(&(*s)->ring);
+    l1l2_motion_worker_free((*s)->worker); /* it may be reading a frame */
+    l1l2_frame_queue_clear(&(*s)->queue);
     l1l2_path_free((*s)->path);
-    l1l2_shutter_filter_free((*s)->wobble);
+    l1l2_shutter_filter_free((*s)->filter);
     l1l2_warp_free((*s)->warp);
     l1l2_pool_free((*s)->pool);
     l1l2_mem_free(*s);
@@ -145,66 +146,78 @@ void l1l2stab_reset(L1L2Stab *s)
 {
     if (!s)
         return;
-    l1l2_motion_worker_reset(s->analysis);
-    l1l2_frame_queue_drop_all(&s->ring);
+    l1l2_motion_worker_reset(s->worker);
+    l1l2_frame_queue_reset(&s->queue);
     l1l2_path_reset(s->path);
-    l1l2_shutter_filter_reset(s->wobble);
+    l1l2_shutter_filter_reset(s->filter);
     s->finished = false;
     s->hurried = 0;
-    s->pulled = 0;
     s->error = L1L2STAB_OK;
     l1l2_fade_next(&s->bypass, true);
 }
 
-/* The frames between given motions are not tracked: a measured one after them starts from nothing. */
-static L1L2MotionResult given_motion(L1L2Stab *s, bool starts_path)
+/* Solving a window costs the frame that has waited longest. */
+static void add_solve_time(L1L2Stab *s, int64_t start_ns)
 {
-    l1l2_motion_worker_reset(s->analysis);
-    return (L1L2MotionResult){
-        .F = l1l2_mat_identity(),
-        .model = starts_path ? L1L2STAB_MOTION_SOURCE_NONE : L1L2STAB_MOTION_SOURCE_GIVEN,
-        .quality = starts_path ? 0.0 : 1.0,
-    };
+    l1l2_frame_queue_oldest(&s->queue)->solve_ns += l1l2_clock_ns() - start_ns;
 }
 
-/* Steps 2b and 3 for the newest frame, whose motion is known. The path is made of the motion that info tells, to the
- * bit: whoever gives it back gets the same path. given_px: that motion, if it was given. */
-static void extend_path(L1L2Stab *s, L1L2QueuedFrame *held, const double *given_px)
+/* Steps 2b and 3 for the newest frame, whose motion is known. */
+static void extend_path(L1L2Stab *s, const L1L2MotionResult *motion)
 {
-    L1L2MotionResult *motion = &held->motion;
-    if (motion->model == L1L2STAB_MOTION_SOURCE_GIVEN)
-        memcpy(held->F_px, given_px, sizeof held->F_px);
-    else
-        l1l2_info_export(&motion->F, s->diagonal_px, held->F_px);
-    memcpy(motion->F.m, held->F_px, sizeof held->F_px);
-    motion->F = l1l2_mat_rescale(motion->F, 1.0 / s->diagonal_px);
+    L1L2QueuedFrame *record = l1l2_frame_queue_newest(&s->queue);
+    const L1L2PathInput input = {
+        .F = &motion->F,
+        .starts_path = motion->model == L1L2STAB_MOTION_SOURCE_NONE,
+        .lambda = record->lambda,
+        .crop_ratio = record->crop_ratio,
+    };
+    record->source = motion->model;
+    record->tracks = motion->tracks;
+    record->inliers = motion->inliers;
+    record->quality = motion->quality;
+    record->scale_ns = motion->scale_ns;
+    record->track_ns = motion->track_ns;
+    record->fit_ns = motion->fit_ns;
     const int64_t start_ns = l1l2_clock_ns();
-    l1l2_path_set_lambda(s->path, held->lambda);
-    l1l2_path_set_crop_ratio(s->path, held->crop_ratio);
-    l1l2_path_push(s->path, &motion->F, motion->model == L1L2STAB_MOTION_SOURCE_NONE);
-    l1l2_shutter_filter_push(s->wobble, &motion->F, motion->has_residual ? &motion->residual : NULL,
-                     motion->model == L1L2STAB_MOTION_SOURCE_NONE);
-    l1l2_frame_queue_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
+    l1l2_path_push(s->path, &input);
+    l1l2_shutter_filter_push(s->filter, &record->path.F, motion->has_residual ? &motion->residual : NULL,
+                             input.starts_path);
+    add_solve_time(s, start_ns);
+}
+
+/* The path with a frame whose motion the caller gave. Such frames are not tracked: a measured one after them starts
+ * from nothing. */
+static void extend_path_as_given(L1L2Stab *s, const double motion_px[9], bool starts_path)
+{
+    l1l2_motion_worker_reset(s->worker);
+    extend_path(s, &(L1L2MotionResult){
+        .F = starts_path ? l1l2_mat_identity() : l1l2_units_import_motion(motion_px, s->diagonal_px),
+        .model = starts_path ? L1L2STAB_MOTION_SOURCE_NONE : L1L2STAB_MOTION_SOURCE_GIVEN,
+        .quality = starts_path ? 0.0 : 1.0,
+    });
 }
 
 /* Waits for the newest frame's motion, if it is being measured, and extends the path by it. A frame that could not be
  * measured starts a path, so that no call but l1l2stab_take_error() has to return the error. */
 static void settle(L1L2Stab *s)
 {
-    if (!l1l2_motion_worker_is_open(s->analysis))
+    if (!l1l2_motion_worker_is_open(s->worker))
         return;
-    L1L2QueuedFrame *held = l1l2_frame_queue_at(&s->ring, s->ring.count - 1);
-    const L1L2StabResult result = l1l2_motion_worker_take(s->analysis, &held->motion);
-    if (result != L1L2STAB_OK) {
-        l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR, "the motion of frame %llu could not be measured: %s. A new path"
-                 " starts there", (unsigned long long)(s->pulled + (uint64_t)s->ring.count - 1),
-                 l1l2stab_strerror(result));
-        held->motion = (L1L2MotionResult){.F = l1l2_mat_identity(), .model = L1L2STAB_MOTION_SOURCE_NONE};
-        held->failed = true;
+    L1L2MotionResult motion;
+    const L1L2StabResult result = l1l2_motion_worker_take(s->worker, &motion);
+    if (result == L1L2STAB_OK) {
+        motion.F = l1l2_units_exact_motion(&motion.F, s->diagonal_px);
+    } else {
+        l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR,
+                 "the motion of frame %lld could not be measured: %s. A new path starts there",
+                 (long long)s->queue.end - 1, l1l2stab_strerror(result));
+        motion = (L1L2MotionResult){.F = l1l2_mat_identity(), .model = L1L2STAB_MOTION_SOURCE_NONE};
+        l1l2_frame_queue_newest(&s->queue)->failed = true;
         if (s->error == L1L2STAB_OK)
             s->error = result;
     }
-    extend_path(s, held, NULL);
+    extend_path(s, &motion);
 }
 
 L1L2StabResult l1l2stab_take_error(L1L2Stab *s)
@@ -265,18 +278,18 @@ L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
         return L1L2STAB_ERR_ARGUMENT;
     if (s->finished)
         return L1L2STAB_ERR_STATE;
-    if (s->ring.count == s->ring.capacity)
+    if (l1l2_frame_queue_count(&s->queue) == s->queue.capacity)
         return L1L2STAB_AGAIN;
-    const bool starts_path = (frame.flags & L1L2STAB_FRAME_DISCONT) != 0 || s->ring.count + s->pulled == 0;
+    const bool starts_path = (frame.flags & L1L2STAB_FRAME_DISCONT) != 0 || s->queue.end == 0;
     settle(s);
-    L1L2QueuedFrame *held = l1l2_frame_queue_append(&s->ring);
-    *held = (L1L2QueuedFrame){.frame = frame, .lambda = s->lambda, .crop_ratio = s->crop_ratio};
-    if (frame.motion) {
-        held->motion = given_motion(s, starts_path);
-        extend_path(s, held, frame.motion);
-    } else {
-        l1l2_motion_worker_begin(s->analysis, frame.data[0], frame.stride[0], starts_path);
-    }
+    L1L2QueuedFrame *record = l1l2_frame_queue_append(&s->queue);
+    record->frame = frame;
+    record->lambda = s->lambda;
+    record->crop_ratio = s->crop_ratio;
+    if (frame.motion)
+        extend_path_as_given(s, frame.motion, starts_path);
+    else
+        l1l2_motion_worker_begin(s->worker, frame.data[0], frame.stride[0], starts_path);
     return L1L2STAB_OK;
 }
 
@@ -284,14 +297,15 @@ L1L2StabResult l1l2stab_hurry(L1L2Stab *s, int frames)
 {
     if (!s || frames < 0)
         return L1L2STAB_ERR_ARGUMENT;
-    if (frames > s->ring.count)
-        frames = s->ring.count;
+    const int held = l1l2_frame_queue_count(&s->queue);
+    if (frames > held)
+        frames = held;
     if (frames <= s->hurried)
         return L1L2STAB_OK;
     settle(s);
     const int64_t start_ns = l1l2_clock_ns();
     l1l2_path_hurry(s->path, frames);
-    l1l2_frame_queue_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
+    add_solve_time(s, start_ns);
     s->hurried = frames;
     return L1L2STAB_OK;
 }
@@ -301,10 +315,10 @@ L1L2StabResult l1l2stab_finish(L1L2Stab *s)
     if (!s)
         return L1L2STAB_ERR_ARGUMENT;
     settle(s);
-    if (!s->finished && s->ring.count > 0) {
+    if (!s->finished && l1l2_frame_queue_count(&s->queue) > 0) {
         const int64_t start_ns = l1l2_clock_ns();
         l1l2_path_finish(s->path);
-        l1l2_frame_queue_at(&s->ring, 0)->solve_ns += l1l2_clock_ns() - start_ns;
+        add_solve_time(s, start_ns);
     }
     s->finished = true;
     return L1L2STAB_OK;
@@ -312,7 +326,8 @@ L1L2StabResult l1l2stab_finish(L1L2Stab *s)
 
 static L1L2StabResult readiness(const L1L2Stab *s)
 {
-    if (s->ring.count > 0 && (s->finished || s->hurried > 0 || s->ring.count == s->ring.capacity))
+    const int held = l1l2_frame_queue_count(&s->queue);
+    if (held > 0 && (s->finished || s->hurried > 0 || held == s->queue.capacity))
         return L1L2STAB_OK;
     return s->finished ? L1L2STAB_EOS : L1L2STAB_AGAIN;
 }
@@ -324,7 +339,7 @@ L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque)
     const L1L2StabResult ready = readiness(s);
     if (ready != L1L2STAB_OK)
         return ready;
-    const L1L2StabFrame *frame = &l1l2_frame_queue_at(&s->ring, 0)->frame;
+    const L1L2StabFrame *frame = &l1l2_frame_queue_oldest(&s->queue)->frame;
     if (pts)
         *pts = frame->pts;
     if (opaque)
@@ -349,23 +364,21 @@ static bool is_displayable(const L1L2Mat *C)
     return hypot(C->m[2], C->m[5]) <= limit && most <= limit && fabs(least) >= 1.0 / limit;
 }
 
-/* Takes the oldest frame's path out of path.c, and accumulates C_t and P_t. Mostly the path was decided long ago, and
+/* Makes sure that the oldest frame's path is decided, and accumulates C_t and P_t. Mostly it was decided long ago, and
  * the newest frame's motion can wait. */
-static L1L2PathFrame fetch_path(L1L2Stab *s)
+static void fetch_path(L1L2Stab *s)
 {
-    L1L2PathFrame next;
-    if (!l1l2_path_pull(s->path, &next)) {
+    const L1L2PathFrame *next = l1l2_path_pull(s->path);
+    if (!next) {
         settle(s);
-        const bool decided = l1l2_path_pull(s->path, &next);
-        assert(decided);
-        (void)decided;
+        next = l1l2_path_pull(s->path);
     }
-    l1l2_shutter_filter_pull(s->wobble);
-    s->camera = next.path_index == 0 ? l1l2_mat_identity() : l1l2_mat_mul(s->camera, next.F);
+    assert(next == &l1l2_frame_queue_oldest(&s->queue)->path);
+    l1l2_shutter_filter_pull(s->filter);
+    s->camera = next->path_index == 0 ? l1l2_mat_identity() : l1l2_mat_mul(s->camera, next->F);
     if (!is_displayable(&s->camera))
         s->camera = l1l2_mat_identity();
-    s->smooth = l1l2_mat_mul(s->camera, next.B);
-    return next;
+    s->smooth = l1l2_mat_mul(s->camera, next->B);
 }
 
 L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info)
@@ -380,38 +393,37 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
         const L1L2StabResult result = l1l2_frame_read(out, &target, &s->cfg.logger);
         if (result != L1L2STAB_OK)
             return result;
-        if (!planes_given(s, &target) || !planes_given(s, &l1l2_frame_queue_at(&s->ring, 0)->frame))
+        if (!planes_given(s, &target) || !planes_given(s, &l1l2_frame_queue_oldest(&s->queue)->frame))
             return L1L2STAB_ERR_ARGUMENT;
     }
-    const L1L2PathFrame next = fetch_path(s);
-    const L1L2QueuedFrame *held = l1l2_frame_queue_at(&s->ring, 0);
-    const L1L2Mat stable = warp_map(s, &next.B, next.crop_ratio), untouched = l1l2_mat_identity();
-    const double bypass = l1l2_fade_next(&s->bypass, next.path_index == 0);
+    fetch_path(s);
+    const L1L2QueuedFrame *record = l1l2_frame_queue_oldest(&s->queue);
+    const L1L2Mat stable = warp_map(s, &record->path.B, record->path.crop_ratio), untouched = l1l2_mat_identity();
+    const double bypass = l1l2_fade_next(&s->bypass, record->path.path_index == 0);
     const L1L2Mat map = l1l2_mat_mix(&stable, &untouched, bypass);
     const int64_t start_ns = l1l2_clock_ns();
     double residual_px;
     const L1L2WarpMap bent = {.affine = map,
-                              .mesh = l1l2_shutter_filter_mesh(s->wobble, &map, 1.0 - bypass, &residual_px)};
+                              .mesh = l1l2_shutter_filter_mesh(s->filter, &map, 1.0 - bypass, &residual_px)};
     if (out) {
-        l1l2_warp_render(s->warp, &bent, (const uint8_t *const *)held->frame.data, held->frame.stride, target.data,
+        l1l2_warp_render(s->warp, &bent, (const uint8_t *const *)record->frame.data, record->frame.stride, target.data,
                          target.stride);
-        out->pts = held->frame.pts;
-        out->opaque = held->frame.opaque;
+        out->pts = record->frame.pts;
+        out->opaque = record->frame.opaque;
     }
     if (info) {
-        l1l2_info_describe(info, held, &next, s->diagonal_px);
-        info->index = s->pulled;
-        l1l2_info_export(&s->camera, s->diagonal_px, info->C);
-        l1l2_info_export(&s->smooth, s->diagonal_px, info->P);
+        l1l2_info_describe(info, record, s->diagonal_px);
+        info->index = (uint64_t)s->queue.begin;
+        l1l2_units_export(&s->camera, s->diagonal_px, info->C);
+        l1l2_units_export(&s->smooth, s->diagonal_px, info->P);
         memcpy(info->warp, map.m, sizeof map.m);
         info->bypass = bypass;
         info->residual = residual_px;
-        info->readout = l1l2_shutter_filter_readout(s->wobble);
+        info->readout = l1l2_shutter_filter_readout(s->filter);
         info->stage_ns[L1L2STAB_STAGE_WARP] = out ? l1l2_clock_ns() - start_ns : 0;
     }
     s->hurried -= s->hurried > 0;
-    s->pulled++;
-    l1l2_frame_queue_drop_oldest(&s->ring);
+    l1l2_frame_queue_drop_oldest(&s->queue);
     return L1L2STAB_OK;
 }
 

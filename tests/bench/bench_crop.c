@@ -45,24 +45,26 @@ static double rms(const Shake *shake)
 
 static void drain(L1L2Path *path, const L1L2PathConfig *cfg, Shake *before, Shake *after)
 {
-    for (L1L2PathFrame f; l1l2_path_pull(path, &f);)
-        if (f.path_index > 0) {
-            add_step(before, &f.F, cfg->width, cfg->height);
-            add_step(after, &f.S, cfg->width, cfg->height);
+    for (const L1L2PathFrame *f; (f = l1l2_path_pull(path)) != NULL;)
+        if (f->path_index > 0) {
+            add_step(before, &f->F, cfg->width, cfg->height);
+            add_step(after, &f->S, cfg->width, cfg->height);
         }
 }
 
 static void smooth(FILE *file, double ratio, Shake *before, Shake *after)
 {
-    L1L2PathConfig cfg = {.lambda = 0.5, .crop_ratio = ratio, .weights = {1, 1, 1}, .window = 150, .overlap = 100,
-                          .model = L1L2STAB_MOTION_MODEL_SIMILARITY};
+    enum { WINDOW = 150, ROWS = WINDOW + L1L2_PATH_PAST };
+    static L1L2PathFrame rows[ROWS];
+    L1L2PathConfig cfg = {.weights = {1, 1, 1}, .window = WINDOW, .overlap = 100,
+                          .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, ROWS}};
     L1L2Path *path;
     rewind(file);
     if (fscanf(file, "# %d %d", &cfg.width, &cfg.height) != 2 || l1l2_path_create(&path, &cfg) != L1L2STAB_OK)
         exit(EXIT_FAILURE);
     for (double a, b, x, y; fscanf(file, "%lf %lf %lf %lf", &a, &b, &x, &y) == 4;) {
         const L1L2Mat F = l1l2_mat_similarity(a, b, x, y);
-        l1l2_path_push(path, &F, false);
+        l1l2_path_push(path, &(L1L2PathInput){.F = &F, .lambda = 0.5, .crop_ratio = ratio});
         drain(path, &cfg, before, after);
     }
     l1l2_path_finish(path);

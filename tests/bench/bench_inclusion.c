@@ -73,10 +73,11 @@ static void run(const Clip *clip, int model, double ratio, Count *count)
 {
     const L1L2StabLogger log = {0};
     const double diagonal_px = hypot(clip->width, clip->height), rounding_px = 1e-6;
+    static L1L2PathFrame rows[WINDOW + L1L2_PATH_PAST];
     const L1L2PathConfig path_cfg = {
-        .width = clip->width, .height = clip->height, .lambda = 0.5, .frame_rate = clip->frame_rate,
-        .crop_ratio = ratio, .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
-        .model = L1L2STAB_MOTION_MODEL_SIMILARITY,
+        .width = clip->width, .height = clip->height, .frame_rate = clip->frame_rate,
+        .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
+        .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, WINDOW + L1L2_PATH_PAST},
     };
     const L1L2ShutterFilterConfig wobble_cfg = {(L1L2StabRollingShutter)model, clip->width, clip->height, clip->width,
                                          clip->height, WINDOW};
@@ -91,13 +92,13 @@ static void run(const Clip *clip, int model, double ratio, Count *count)
         const L1L2MotionResult *m = &clip->motion[model][t < clip->frames ? t : 0];
         const bool starts_path = m->model == L1L2STAB_MOTION_SOURCE_NONE;
         if (t < clip->frames) {
-            l1l2_path_push(path, &m->F, starts_path);
+            l1l2_path_push(path, &(L1L2PathInput){&m->F, starts_path, 0.5, ratio});
             l1l2_shutter_filter_push(wobble, &m->F, m->has_residual ? &m->residual : NULL, starts_path);
         } else {
             l1l2_path_finish(path);
         }
-        for (L1L2PathFrame f; l1l2_path_pull(path, &f); count->frames++) {
-            const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f.B, diagonal_px), l1l2_mat_diagonal(ratio, ratio));
+        for (const L1L2PathFrame *f; (f = l1l2_path_pull(path)) != NULL; count->frames++) {
+            const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f->B, diagonal_px), l1l2_mat_diagonal(ratio, ratio));
             double reach;
             l1l2_shutter_filter_pull(wobble);
             const L1L2WarpMesh *bent = l1l2_shutter_filter_mesh(wobble, &map, 1.0, &reach);

@@ -158,10 +158,11 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
         .format = l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8), .width = WIDTH, .height = HEIGHT, .analysis_size = 640,
         .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .seed = 1, .log = &log, .rolling_shutter = model,
     };
+    static L1L2PathFrame rows[WINDOW + L1L2_PATH_PAST];
     const L1L2PathConfig path_cfg = {
-        .width = WIDTH, .height = HEIGHT, .lambda = 0.5, .frame_rate = scene->fps, .crop_ratio = crop_ratio,
+        .width = WIDTH, .height = HEIGHT, .frame_rate = scene->fps,
         .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
-        .model = L1L2STAB_MOTION_MODEL_SIMILARITY,
+        .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, WINDOW + L1L2_PATH_PAST},
     };
     const L1L2ShutterFilterConfig wobble_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW};
     L1L2Motion *motion = NULL;
@@ -180,14 +181,14 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
             synth_render_gray(synth, t, picture.data[0], picture.stride[0]);
             if (l1l2_motion_push(motion, picture.data[0], picture.stride[0], t == 0, &m) != L1L2STAB_OK)
                 exit(EXIT_FAILURE);
-            l1l2_path_push(path, &m.F, t == 0);
+            l1l2_path_push(path, &(L1L2PathInput){&m.F, t == 0, 0.5, crop_ratio});
             l1l2_shutter_filter_push(wobble, &m.F, m.has_residual ? &m.residual : NULL, t == 0);
         } else {
             l1l2_path_finish(path);
         }
-        for (L1L2PathFrame f; l1l2_path_pull(path, &f); out++) {
-            take(wobble, &f, &mesh[out % 2], &errors);
-            compare(synth, out, &f, &mesh[(out + 1) % 2], &mesh[out % 2], &errors);
+        for (const L1L2PathFrame *f; (f = l1l2_path_pull(path)) != NULL; out++) {
+            take(wobble, f, &mesh[out % 2], &errors);
+            compare(synth, out, f, &mesh[(out + 1) % 2], &mesh[out % 2], &errors);
             if (picture_path && out == PICTURE_FRAME) {
                 synth_render_gray(synth, out, picture.data[0], picture.stride[0]);
                 draw(&picture, &mesh[out % 2]);

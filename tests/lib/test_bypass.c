@@ -206,6 +206,7 @@ int main(void)
 {
     Suite *suite = suite_create("bypass");
     TCase *tc = tcase_create("bypass");
+    tcase_set_timeout(tc, 60);
     tcase_add_test(tc, a_fade_is_exact_at_both_ends_and_never_jumps);
     tcase_add_test(tc, a_bypass_is_at_once_and_soft_and_leaves_the_path_alone);
     tcase_add_test(tc, an_untouched_frame_is_the_source_byte_for_byte_in_every_format);

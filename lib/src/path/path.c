@@ -11,43 +11,37 @@
 #include "path/solver.h"
 #include "path/window_schedule.h"
 
-typedef struct Slot {
-    L1L2PathFrame frame;
-    L1L2Mat next_B; /* the B that an older window found for a frame it did not give out; blend joins with it */
-} Slot;
+_Static_assert(L1L2_PATH_HISTORY <= L1L2_PATH_PAST, "a window looks back on more frames than are kept");
 
 struct L1L2Path {
     L1L2PathConfig cfg;
-    double crop_ratio; /* of the frame pushed last, on the way to cfg's */
+    double crop_ratio; /* in effect for the frame pushed last */
     L1L2PathSchedule schedule;
-    Slot *slots;      /* frame t is at t modulo capacity */
-    int capacity;     /* window + the three frames that a window looks back on */
-    int64_t start;    /* frame with which the current path starts */
+    int64_t start;     /* frame with which the current path starts */
     int64_t pushed, decided, pulled; /* frames since reset */
     L1L2PathProblem *problem;
     L1L2PathSolver *solver;
     double (*solution)[L1L2_DIM];
 };
 
-static Slot *slot(L1L2Path *path, int64_t t)
+static L1L2PathFrame *frame_at(const L1L2Path *path, int64_t t)
 {
-    return &path->slots[t % path->capacity];
+    return l1l2_frame_column_at(path->cfg.frames, t);
 }
 
 L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg)
 {
     *out = NULL;
+    assert(cfg->frames.rows >= cfg->window + L1L2_PATH_PAST);
     L1L2Path *path = l1l2_mem_new(1, sizeof *path);
     if (!path)
         return L1L2STAB_ERR_NOMEM;
     const int dim = l1l2_mat_dim(cfg->model);
     path->cfg = *cfg;
-    path->capacity = cfg->window + L1L2_PATH_HISTORY + 1;
-    path->slots = l1l2_mem_new((size_t)path->capacity, sizeof *path->slots);
     path->problem = l1l2_path_problem_create(cfg->window, dim);
     path->solver = l1l2_path_solver_create(cfg->window, dim);
     path->solution = l1l2_mem_new((size_t)cfg->window, sizeof *path->solution);
-    if (!path->slots || !path->problem || !path->solver || !path->solution) {
+    if (!path->problem || !path->solver || !path->solution) {
         l1l2_path_free(path);
         return L1L2STAB_ERR_NOMEM;
     }
@@ -61,7 +55,6 @@ void l1l2_path_free(L1L2Path *path)
 {
     if (!path)
         return;
-    l1l2_mem_free(path->slots);
     l1l2_path_problem_free(path->problem);
     l1l2_path_solver_free(path->solver);
     l1l2_mem_free(path->solution);
@@ -72,17 +65,6 @@ void l1l2_path_reset(L1L2Path *path)
 {
     path->start = path->pushed = path->decided = path->pulled = 0;
     path->schedule = l1l2_path_schedule_start(path->cfg.window, path->cfg.overlap);
-    path->crop_ratio = path->cfg.crop_ratio;
-}
-
-void l1l2_path_set_lambda(L1L2Path *path, double lambda)
-{
-    path->cfg.lambda = lambda;
-}
-
-void l1l2_path_set_crop_ratio(L1L2Path *path, double crop_ratio)
-{
-    path->cfg.crop_ratio = crop_ratio;
 }
 
 static L1L2PathCropWindow crop_of(const L1L2Path *path, const L1L2PathFrame *frame)
@@ -105,7 +87,7 @@ static void describe_window(L1L2Path *path, const L1L2PathWindow *step)
     L1L2Mat camera = l1l2_mat_identity();
     p->count = step->count;
     for (int t = 0; t < step->count; t++) {
-        const L1L2PathFrame *frame = &slot(path, first + t)->frame;
+        const L1L2PathFrame *frame = frame_at(path, first + t);
         const L1L2PathCropWindow crop = crop_of(path, frame);
         if (t > 0)
             camera = l1l2_mat_mul(camera, frame->F);
@@ -117,9 +99,9 @@ static void describe_window(L1L2Path *path, const L1L2PathWindow *step)
     camera = l1l2_mat_identity();
     for (int back = 1; back <= L1L2_PATH_HISTORY && back <= step->first; back++) {
         L1L2Mat inverse;
-        l1l2_mat_inverse(slot(path, first - back + 1)->frame.F, &inverse);
+        l1l2_mat_inverse(frame_at(path, first - back + 1)->F, &inverse);
         camera = l1l2_mat_mul(camera, inverse);
-        const L1L2Mat smooth = l1l2_mat_mul(camera, slot(path, first - back)->frame.B);
+        const L1L2Mat smooth = l1l2_mat_mul(camera, frame_at(path, first - back)->B);
         l1l2_mat_to_q(&smooth, p->past[L1L2_PATH_HISTORY - back]);
         p->history = back;
     }
@@ -131,13 +113,13 @@ static void hold_course(L1L2Path *path, const L1L2PathWindow *step)
 {
     const double fade = 0.95;
     const int64_t first = path->start + step->first;
-    L1L2Mat B = step->first > 0 ? slot(path, first - 1)->frame.B : l1l2_mat_identity();
+    L1L2Mat B = step->first > 0 ? frame_at(path, first - 1)->B : l1l2_mat_identity();
     double speed_x = 0.0, speed_y = 0.0;
     if (step->first > 0)
-        speed_x = slot(path, first - 1)->frame.S.m[2], speed_y = slot(path, first - 1)->frame.S.m[5];
+        speed_x = frame_at(path, first - 1)->S.m[2], speed_y = frame_at(path, first - 1)->S.m[5];
     for (int t = 0; t < step->count; t++) {
         if (step->first + t > 0) {
-            const L1L2PathFrame *frame = &slot(path, first + t)->frame;
+            const L1L2PathFrame *frame = frame_at(path, first + t);
             const L1L2PathCropWindow crop = crop_of(path, frame);
             L1L2Mat inverse; /* P_t = P_{t-1} S, so B_t = F_t^-1 B_{t-1} S */
             l1l2_mat_inverse(frame->F, &inverse);
@@ -145,7 +127,7 @@ static void hold_course(L1L2Path *path, const L1L2PathWindow *step)
             B = l1l2_path_constraint_shrink(&crop, &B);
         }
         speed_x *= fade, speed_y *= fade;
-        slot(path, first + t)->next_B = B;
+        frame_at(path, first + t)->next_B = B;
     }
 }
 
@@ -156,12 +138,12 @@ static void update_transforms(L1L2Path *path, const L1L2PathWindow *step)
     for (int t = 0; t < step->count; t++) {
         const L1L2Mat camera = l1l2_mat_from_q(p->camera[t], p->dim);
         const L1L2Mat smooth = l1l2_mat_from_q(path->solution[t], p->dim);
-        Slot *s = slot(path, path->start + step->first + t);
-        const L1L2PathCropWindow crop = crop_of(path, &s->frame);
+        L1L2PathFrame *frame = frame_at(path, path->start + step->first + t);
+        const L1L2PathCropWindow crop = crop_of(path, frame);
         L1L2Mat inverse;
         l1l2_mat_inverse(camera, &inverse);
         const L1L2Mat B = l1l2_mat_mul(inverse, smooth);
-        s->next_B = l1l2_path_constraint_shrink(&crop, &B);
+        frame->next_B = l1l2_path_constraint_shrink(&crop, &B);
     }
 }
 
@@ -180,12 +162,12 @@ static void decide(L1L2Path *path, const L1L2PathWindow *step, const L1L2PathSol
     const int shared = blended(path, step);
     for (int t = 0; t < step->emit; t++) {
         const int64_t frame = path->start + step->first + t;
-        L1L2PathFrame *f = &slot(path, frame)->frame;
-        f->B = t < shared ? blend(&f->B, &slot(path, frame)->next_B, t + 1, shared) : slot(path, frame)->next_B;
+        L1L2PathFrame *f = frame_at(path, frame);
+        f->B = t < shared ? blend(&f->B, &f->next_B, t + 1, shared) : f->next_B;
         f->S = l1l2_mat_identity();
         if (frame > path->start) {
             L1L2Mat inverse;
-            l1l2_mat_inverse(slot(path, frame - 1)->frame.B, &inverse);
+            l1l2_mat_inverse(frame_at(path, frame - 1)->B, &inverse);
             f->S = l1l2_mat_mul(l1l2_mat_mul(inverse, f->F), f->B);
         }
         f->early = step->early;
@@ -193,8 +175,8 @@ static void decide(L1L2Path *path, const L1L2PathWindow *step, const L1L2PathSol
         f->report = *report;
     }
     for (int t = step->emit; t < step->count; t++) {
-        Slot *s = slot(path, path->start + step->first + t);
-        s->frame.B = s->next_B; /* what the next window blends with */
+        L1L2PathFrame *frame = frame_at(path, path->start + step->first + t);
+        frame->B = frame->next_B; /* what the next window blends with */
     }
     path->decided = path->start + step->first + step->emit;
 }
@@ -226,31 +208,39 @@ static void advance(L1L2Path *path, bool ended)
         solve_window(path, &step);
 }
 
-void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path)
+/* The crop ratio of the next frame, on the way to the one that is wanted. */
+static double step_crop_ratio(const L1L2Path *path, const L1L2PathInput *input, bool starts_path)
+{
+    const double change = input->crop_ratio - path->crop_ratio;
+    if (starts_path || fabs(change) <= L1L2_CROP_STEP)
+        return input->crop_ratio;
+    return path->crop_ratio + copysign(L1L2_CROP_STEP, change);
+}
+
+/* What the path uses of a motion. */
+static L1L2Mat usable_motion(const L1L2Path *path, const L1L2Mat *F)
+{
+    const L1L2Mat motion = l1l2_mat_reduce(F, path->problem->dim);
+    L1L2Mat inverse;
+    return l1l2_mat_is_finite(F) && l1l2_mat_inverse(motion, &inverse) ? motion : l1l2_mat_identity();
+}
+
+void l1l2_path_push(L1L2Path *path, const L1L2PathInput *input)
 {
     assert(path->pushed - path->pulled < path->cfg.window);
-    starts_path = starts_path || path->pushed == 0;
+    const bool starts_path = input->starts_path || path->pushed == 0;
     if (starts_path) {
         advance(path, true);
         path->start = path->pushed;
         path->schedule = l1l2_path_schedule_start(path->cfg.window, path->cfg.overlap);
     }
-    const double zoom = path->cfg.crop_ratio - path->crop_ratio;
-    if (starts_path || fabs(zoom) <= L1L2_CROP_STEP)
-        path->crop_ratio = path->cfg.crop_ratio;
-    else
-        path->crop_ratio += copysign(L1L2_CROP_STEP, zoom);
-    L1L2PathFrame *f = &slot(path, path->pushed)->frame;
-    f->F = l1l2_mat_identity();
-    if (!starts_path) {
-        const L1L2Mat motion = l1l2_mat_reduce(F, path->problem->dim);
-        L1L2Mat inverse;
-        if (l1l2_mat_is_finite(F) && l1l2_mat_inverse(motion, &inverse))
-            f->F = motion;
-    }
-    f->lambda = path->cfg.lambda;
-    f->crop_ratio = path->crop_ratio;
-    f->path_index = (uint64_t)(path->pushed - path->start);
+    path->crop_ratio = step_crop_ratio(path, input, starts_path);
+    *frame_at(path, path->pushed) = (L1L2PathFrame){
+        .F = starts_path ? l1l2_mat_identity() : usable_motion(path, input->F),
+        .lambda = input->lambda,
+        .crop_ratio = path->crop_ratio,
+        .path_index = (uint64_t)(path->pushed - path->start),
+    };
     path->pushed++;
     advance(path, false);
 }
@@ -268,10 +258,7 @@ void l1l2_path_finish(L1L2Path *path)
     advance(path, true);
 }
 
-bool l1l2_path_pull(L1L2Path *path, L1L2PathFrame *out)
+const L1L2PathFrame *l1l2_path_pull(L1L2Path *path)
 {
-    if (path->pulled == path->decided)
-        return false;
-    *out = slot(path, path->pulled++)->frame;
-    return true;
+    return path->pulled == path->decided ? NULL : frame_at(path, path->pulled++);
 }

@@ -21,6 +21,7 @@
 
 #include <l1l2stab/l1l2stab.h>
 
+#include "common/frame_column.h"
 #include "common/geom.h"
 #include "path/solver.h"
 
@@ -28,45 +29,54 @@ typedef struct L1L2Path L1L2Path;
 
 typedef struct L1L2PathConfig {
     int width, height;  /* pixels: only their ratio matters */
-    double lambda;      /* of eq. (4) at 30 frames/s */
     double frame_rate;  /* frames a second; 0: 30 */
-    double crop_ratio;
     double weights[3];  /* of eq. (3); 1, 1, 1 in eq. (5) */
     int window, overlap; /* N, K */
     L1L2StabJoin join;
     L1L2StabMotionModel model; /* of F, and with it of B and of the paths */
     L1L2StabSolver solver;
     const L1L2StabLogger *log;
+    L1L2FrameColumn frames; /* of L1L2PathFrame; at least window + L1L2_PATH_PAST rows */
 } L1L2PathConfig;
 
+/* What the path knows of a frame: its part of the frame's record. Nobody else writes it. */
 typedef struct L1L2PathFrame {
-    L1L2Mat F, B;        /* measured motion, update transform */
+    L1L2Mat F, B;        /* motion, update transform */
+    L1L2Mat next_B;      /* for blend: the B that a window found for a frame that the next window emits */
     L1L2Mat S;           /* smooth step P_{t-1}^-1 P_t; identity at a path's first frame */
     uint64_t path_index; /* frames since the path's start */
-    double lambda, crop_ratio; /* as they were when the frame was pushed */
+    double lambda;       /* as it was when the frame was pushed */
+    double crop_ratio;   /* in effect: on the way to the one that was set */
     bool early;          /* decided by an early window, with a shorter look-ahead */
-    bool fallback;       /* no solver arrived: the path is feasible and continuous, but not the optimum */
+    bool fallback;       /* no solver converged: the path is feasible and continuous, but not the optimum */
     L1L2PathSolverReport report; /* of the frame's window */
 } L1L2PathFrame;
 
-/* On error *out is NULL. cfg->log must outlive the object. */
+/* A new frame. */
+typedef struct L1L2PathInput {
+    const L1L2Mat *F;    /* frame t to t-1. The path takes what its model can express; one that is not finite or not
+                          * invertible counts as no motion */
+    bool starts_path;    /* the path before it ends; F is not used */
+    double lambda;       /* of eq. (4) at 30 frames/s */
+    double crop_ratio;   /* wanted. The one in effect changes by at most L1L2_CROP_STEP a frame: a slower change is
+                          * followed exactly, a jump becomes a zoom. A path that starts has it at once */
+} L1L2PathInput;
+
+#define L1L2_CROP_STEP 0.005
+
+/* Pulled frames that the path still reads. */
+enum { L1L2_PATH_PAST = 3 };
+
+/* On error *out is NULL. cfg->log and the rows of cfg->frames must outlive the object. */
 L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg);
 void l1l2_path_free(L1L2Path *path);
 
-/* As new, with its memory kept. */
+/* As new, with its memory kept: the next frame is number 0. */
 void l1l2_path_reset(L1L2Path *path);
 
-/* For the frames that are pushed from now on, also after a reset. A crop ratio changes by at most L1L2_CROP_STEP a
- * frame: what is moved slower than that is followed exactly, a jump becomes a zoom. A path that starts has it at
- * once. */
-#define L1L2_CROP_STEP 0.005
-void l1l2_path_set_lambda(L1L2Path *path, double lambda);
-void l1l2_path_set_crop_ratio(L1L2Path *path, double crop_ratio);
-
-/* The next frame's motion F (frame t to t-1), of which the motion model takes what it can say; one that is not finite
- * or not invertible counts as none. starts_path: F
- * is not used, the path before it ends. At most `window` - 1 frames may be waiting for l1l2_path_pull(). */
-void l1l2_path_push(L1L2Path *path, const L1L2Mat *F, bool starts_path);
+/* The next frame. Fills in its row, and solves every window that is complete. At most `window` - 1 frames may be
+ * waiting for l1l2_path_pull(). */
+void l1l2_path_push(L1L2Path *path, const L1L2PathInput *input);
 
 /* Decides the `frames` oldest frames that have not been pulled, or all there are, by what has come. Those that already
  * are decided stay as they are. */
@@ -75,8 +85,8 @@ void l1l2_path_hurry(L1L2Path *path, int frames);
 /* No more frames: all that are left get decided. */
 void l1l2_path_finish(L1L2Path *path);
 
-/* The oldest frame that has not been pulled, if it is decided: frame t is when frame t + window - 1 has been pushed, if
- * not sooner. */
-bool l1l2_path_pull(L1L2Path *path, L1L2PathFrame *out);
+/* The row of the oldest frame that has not been pulled, if it is decided, else NULL: frame t is when frame
+ * t + window - 1 has been pushed, if not sooner. */
+const L1L2PathFrame *l1l2_path_pull(L1L2Path *path);
 
 #endif

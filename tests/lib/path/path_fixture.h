@@ -19,36 +19,72 @@ typedef struct Run {
     L1L2Mat F[MAX_FRAMES];
     bool starts[MAX_FRAMES];
     int hurry[MAX_FRAMES]; /* frames that are let go after frame t has come, of those that are held */
-    L1L2PathFrame out[MAX_FRAMES];
+    L1L2PathFrame out[MAX_FRAMES]; /* the path's rows: frame t is in row t */
 } Run;
 
-static inline L1L2PathConfig defaults(void)
+/* A path's config, and what each frame is pushed with. */
+typedef struct Setup {
+    int width, height;
+    double frame_rate, weights[3];
+    int window, overlap;
+    L1L2StabJoin join;
+    L1L2StabMotionModel model;
+    L1L2StabSolver solver;
+    double lambda, crop_ratio;
+} Setup;
+
+static inline Setup defaults(void)
 {
-    return (L1L2PathConfig){.width = 640, .height = 360, .lambda = 0.5, .frame_rate = 30, .crop_ratio = 0.9,
-                            .weights = {1, 1, 1}, .window = 150, .overlap = 100,
-                            .join = L1L2STAB_JOIN_CONTINUOUS, .model = L1L2STAB_MOTION_MODEL_SIMILARITY};
+    return (Setup){.width = 640, .height = 360, .lambda = 0.5, .frame_rate = 30, .crop_ratio = 0.9,
+                   .weights = {1, 1, 1}, .window = 150, .overlap = 100,
+                   .join = L1L2STAB_JOIN_CONTINUOUS, .model = L1L2STAB_MOTION_MODEL_SIMILARITY};
+}
+
+/* A path whose rows are r->out. */
+static inline L1L2Path *new_path(const Setup *setup, Run *r)
+{
+    const L1L2PathConfig cfg = {
+        .width = setup->width, .height = setup->height, .frame_rate = setup->frame_rate,
+        .weights = {setup->weights[0], setup->weights[1], setup->weights[2]},
+        .window = setup->window, .overlap = setup->overlap, .join = setup->join, .model = setup->model,
+        .solver = setup->solver, .frames = {r->out, sizeof *r->out, MAX_FRAMES},
+    };
+    L1L2Path *path;
+    ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
+    return path;
+}
+
+static inline void push(L1L2Path *path, const Setup *setup, const L1L2Mat *F, bool starts_path)
+{
+    l1l2_path_push(path, &(L1L2PathInput){F, starts_path, setup->lambda, setup->crop_ratio});
+}
+
+/* Whether frame t of the path was next, and decided. */
+static inline bool pull(L1L2Path *path, const Run *r, int t)
+{
+    const L1L2PathFrame *frame = l1l2_path_pull(path);
+    ck_assert(!frame || frame == &r->out[t]);
+    return frame != NULL;
 }
 
 /* Pushes all frames, pulling as the stabilizer does: frame t once frame t + N - 1 has come, or when it is hurried. */
-static inline void run(const L1L2PathConfig *cfg, Run *r)
+static inline void run(const Setup *setup, Run *r)
 {
-    L1L2Path *path;
-    ck_assert_int_eq(l1l2_path_create(&path, cfg), L1L2STAB_OK);
+    L1L2Path *path = new_path(setup, r);
     int pulled = 0;
     for (int t = 0; t < r->frames; t++) {
-        l1l2_path_push(path, &r->F[t], r->starts[t]);
-        if (t - pulled + 1 == cfg->window)
-            ck_assert_msg(l1l2_path_pull(path, &r->out[pulled++]), "frame %d was not decided in time", pulled - 1);
+        push(path, setup, &r->F[t], r->starts[t]);
+        if (t - pulled + 1 == setup->window)
+            ck_assert_msg(pull(path, r, pulled++), "frame %d was not decided in time", pulled - 1);
         if (r->hurry[t] > 0)
             l1l2_path_hurry(path, r->hurry[t]);
         for (int i = 0; i < r->hurry[t] && pulled <= t; i++)
-            ck_assert_msg(l1l2_path_pull(path, &r->out[pulled++]), "frame %d was hurried in vain", pulled - 1);
+            ck_assert_msg(pull(path, r, pulled++), "frame %d was hurried in vain", pulled - 1);
     }
     l1l2_path_finish(path);
     while (pulled < r->frames)
-        ck_assert(l1l2_path_pull(path, &r->out[pulled++]));
-    L1L2PathFrame beyond;
-    ck_assert(!l1l2_path_pull(path, &beyond));
+        ck_assert(pull(path, r, pulled++));
+    ck_assert_ptr_null(l1l2_path_pull(path));
     l1l2_path_free(path);
 }
 

@@ -18,7 +18,7 @@ static void third_differences(const Run *r, int every, double *at_joins, double 
 
 START_TEST(as_many_frames_come_out_as_went_in)
 {
-    L1L2PathConfig cfg = defaults();
+    Setup cfg = defaults();
     cfg.window = 8, cfg.overlap = 5;
     for (int frames = 0; frames <= 40; frames++) {
         Run *r = shaky_run(frames, 1.0, 2.0, 1);
@@ -38,7 +38,7 @@ START_TEST(the_longest_window_and_sliding_ones_work)
         int window, overlap, frames;
     } cases[] = {{900, 600, 1300}, {40, 39, 120}, {4, 3, 60}, {5, 3, 60}};
     for (int i = 0; i < 4; i++) {
-        L1L2PathConfig cfg = defaults();
+        Setup cfg = defaults();
         cfg.window = cases[i].window, cfg.overlap = cases[i].overlap;
         Run *r = shaky_run(cases[i].frames, 0.7, 4.0, 3);
         run(&cfg, r);
@@ -51,7 +51,7 @@ END_TEST
 
 START_TEST(a_constant_path_is_returned_unchanged)
 {
-    L1L2PathConfig cfg = defaults();
+    Setup cfg = defaults();
     Run *r = new_run(400);
     for (int join = 0; join < 2; join++) {
         cfg.join = (L1L2StabJoin)join;
@@ -68,7 +68,7 @@ END_TEST
 START_TEST(a_steady_pan_keeps_its_speed_by_the_defaults)
 {
     static const double speeds[] = {0.2, 0.5, 1.0, 2.0}, tolerance[] = {0.2, 0.05, 0.05, 0.05};
-    const L1L2PathConfig cfg = defaults();
+    const Setup cfg = defaults();
     for (int i = 0; i < 4; i++) {
         Run *r = shaky_run(750, speeds[i], 0.0, 1); /* windows every 50 frames: 10 after the first */
         run(&cfg, r);
@@ -81,7 +81,7 @@ END_TEST
 
 START_TEST(shake_on_a_steady_pan_is_removed)
 {
-    const L1L2PathConfig cfg = defaults();
+    const Setup cfg = defaults();
     Run *r = shaky_run(600, 1.0, 6.0, 5);
     run(&cfg, r);
     double acceleration = 0.0;
@@ -94,7 +94,7 @@ END_TEST
 
 START_TEST(a_shaky_still_camera_gives_constant_pieces)
 {
-    const L1L2PathConfig cfg = defaults();
+    const Setup cfg = defaults();
     Run *r = shaky_run(600, 0.0, 3.0, 9);
     run(&cfg, r);
     int still = 0;
@@ -109,7 +109,7 @@ START_TEST(the_continuous_join_has_no_seam_and_blend_is_rougher)
 {
     double at_joins[2], inside[2];
     for (int join = 0; join < 2; join++) {
-        L1L2PathConfig cfg = defaults();
+        Setup cfg = defaults();
         cfg.join = (L1L2StabJoin)join;
         cfg.overlap = join == L1L2STAB_JOIN_BLEND ? 30 : 100;
         Run *r = wandering_run(1500, 0.7, 40.0, 4.0, 3);
@@ -124,7 +124,7 @@ END_TEST
 
 START_TEST(a_cut_ends_one_path_and_starts_another)
 {
-    const L1L2PathConfig cfg = defaults();
+    const Setup cfg = defaults();
     Run *both = shaky_run(500, 1.0, 4.0, 2), *first = shaky_run(230, 1.0, 4.0, 2), *second = new_run(270);
     both->starts[230] = true;
     for (int t = 0; t < 270; t++)
@@ -146,7 +146,7 @@ END_TEST
 
 START_TEST(cuts_at_every_place_in_a_window_lose_no_frame)
 {
-    L1L2PathConfig cfg = defaults();
+    Setup cfg = defaults();
     cfg.window = 10, cfg.overlap = 6;
     for (int cut = 1; cut < 30; cut++)
         for (int next = 1; next < 4; next++) {
@@ -164,7 +164,7 @@ END_TEST
 START_TEST(lambda_means_the_same_at_every_frame_rate)
 {
     /* The same walk sampled at 30 and at 60 frames/s; window and overlap doubled, as the documentation says. */
-    L1L2PathConfig slow = defaults(), fast = defaults();
+    Setup slow = defaults(), fast = defaults();
     fast.frame_rate = 60, fast.window = 300, fast.overlap = 200;
     Run *a = new_run(600), *b = new_run(1200);
     L1L2Mat before = l1l2_mat_identity(), inverse;
@@ -192,19 +192,18 @@ END_TEST
 
 START_TEST(a_reset_path_is_as_good_as_new)
 {
-    const L1L2PathConfig cfg = defaults();
+    const Setup cfg = defaults();
     Run *r = shaky_run(330, 1.0, 4.0, 6), *fresh = shaky_run(330, 1.0, 4.0, 6);
-    L1L2Path *path;
     run(&cfg, fresh);
-    ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
+    L1L2Path *path = new_path(&cfg, r);
     for (int t = 0; t < 140; t++)
-        l1l2_path_push(path, &r->F[139 - t], false);
+        push(path, &cfg, &r->F[139 - t], false);
     l1l2_path_reset(path);
     int pulled = 0;
     for (int t = 0; t < r->frames; t++) {
-        l1l2_path_push(path, &r->F[t], false);
+        push(path, &cfg, &r->F[t], false);
         if (t - pulled + 1 == cfg.window)
-            ck_assert(l1l2_path_pull(path, &r->out[pulled++]));
+            ck_assert(pull(path, r, pulled++));
     }
     for (int t = 0; t < pulled; t++)
         ck_assert_mem_eq(r->out[t].B.m, fresh->out[t].B.m, sizeof fresh->out[t].B.m);

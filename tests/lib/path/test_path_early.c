@@ -46,7 +46,7 @@ static Roughness roughness(const Run *r, bool of_camera)
 /* A walk, with a stall every 100 frames in which all but `left` of the 60 frames of a window leave early. */
 static Roughness stalled(L1L2StabJoin join, int left)
 {
-    L1L2PathConfig cfg = defaults();
+    Setup cfg = defaults();
     cfg.window = 60, cfg.overlap = join == L1L2STAB_JOIN_BLEND ? 12 : 40, cfg.join = join;
     Run *r = wandering_run(1500, 0.7, 40.0, 4.0, 3);
     for (int t = 100; t < r->frames; t += 100)
@@ -60,7 +60,7 @@ static Roughness stalled(L1L2StabJoin join, int left)
 START_TEST(hurried_at_random_nothing_is_lost_and_all_stays_inside)
 {
     for (int i = 0; i < 12; i++) {
-        L1L2PathConfig cfg = defaults();
+        Setup cfg = defaults();
         cfg.window = 8 + 7 * i;
         cfg.join = (L1L2StabJoin)(i % 2);
         cfg.overlap = i % 2 ? cfg.window / 4 + 1 : cfg.window * 2 / 3;
@@ -86,7 +86,7 @@ END_TEST
 START_TEST(what_is_decided_already_is_not_decided_anew)
 {
     /* A window of 150 decides 50 frames. Hurrying of these alone lets them go, and changes nothing. */
-    const L1L2PathConfig cfg = defaults();
+    const Setup cfg = defaults();
     Run *plain = wandering_run(400, 1.0, 20.0, 6.0, 4), *hurried = wandering_run(400, 1.0, 20.0, 6.0, 4);
     hurried->hurry[149] = 49;
     run(&cfg, plain);
@@ -104,7 +104,7 @@ START_TEST(an_early_frame_is_the_optimum_of_what_has_come)
 {
     /* Given out early, of 60 frames: as if the stream had ended there. If it then does end, what was kept back is the
      * optimum too: the frames that were given out bind it to the same one. */
-    const L1L2PathConfig cfg = defaults();
+    const Setup cfg = defaults();
     for (int given = 1; given <= 60; given += 7) {
         Run *ended = wandering_run(60, 1.0, 20.0, 6.0, 4), *early = wandering_run(60, 1.0, 20.0, 6.0, 4);
         run(&cfg, ended);
@@ -147,7 +147,7 @@ END_TEST
 
 START_TEST(after_a_stall_a_pan_has_its_speed_again)
 {
-    const L1L2PathConfig cfg = defaults();
+    const Setup cfg = defaults();
     Run *r = shaky_run(900, 1.0, 0.0, 1);
     for (int t = 300; t < 310; t++)
         r->hurry[t] = t < 309 ? 15 : 150; /* all that was held */
@@ -161,24 +161,23 @@ END_TEST
 
 START_TEST(a_reset_forgets_that_frames_were_hurried)
 {
-    L1L2PathConfig cfg = defaults();
+    Setup cfg = defaults();
     cfg.join = L1L2STAB_JOIN_BLEND, cfg.window = 40, cfg.overlap = 10;
-    Run *fresh = wandering_run(120, 1.0, 20.0, 6.0, 6);
-    L1L2Path *path;
-    L1L2PathFrame out;
+    Run *fresh = wandering_run(120, 1.0, 20.0, 6.0, 6), *again = new_run(120);
     run(&cfg, fresh);
-    ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
+    L1L2Path *path = new_path(&cfg, again);
     for (int t = 0; t < 20; t++)
-        l1l2_path_push(path, &fresh->F[20 + t], false);
+        push(path, &cfg, &fresh->F[20 + t], false);
     l1l2_path_hurry(path, 7);
     l1l2_path_reset(path);
     for (int t = 0; t < 120; t++) {
-        l1l2_path_push(path, &fresh->F[t], false);
-        ck_assert_int_eq(l1l2_path_pull(path, &out), t >= 39);
+        push(path, &cfg, &fresh->F[t], false);
+        ck_assert_int_eq(pull(path, again, t - 39), t >= 39);
         if (t >= 39)
-            ck_assert_mem_eq(out.B.m, fresh->out[t - 39].B.m, sizeof out.B.m);
+            ck_assert_mem_eq(again->out[t - 39].B.m, fresh->out[t - 39].B.m, sizeof fresh->out[0].B.m);
     }
     l1l2_path_free(path);
+    free(again);
     free(fresh);
 }
 END_TEST

@@ -13,7 +13,7 @@ typedef struct Roughness {
     int count[2];
 } Roughness;
 
-static Run *measured_run(const char *name, L1L2PathConfig *cfg)
+static Run *measured_run(const char *name, Setup *cfg)
 {
     char path[512];
     snprintf(path, sizeof path, "%s/%s.txt", REFERENCE_MOTION, name);
@@ -29,7 +29,7 @@ static Run *measured_run(const char *name, L1L2PathConfig *cfg)
 }
 
 /* Where corner k of the frame goes in one smooth step, px. */
-static L1L2Point corner_step(const Run *r, const L1L2PathConfig *cfg, int t, int k)
+static L1L2Point corner_step(const Run *r, const Setup *cfg, int t, int k)
 {
     const double scale = 640.0 / cfg->width, diagonal = hypot(cfg->width, cfg->height);
     const L1L2Point u = {(k & 1 ? 0.5 : -0.5) * cfg->width / diagonal, (k & 2 ? 0.5 : -0.5) * cfg->height / diagonal};
@@ -37,7 +37,7 @@ static L1L2Point corner_step(const Run *r, const L1L2PathConfig *cfg, int t, int
     return (L1L2Point){(p.x - u.x) * diagonal * scale, (p.y - u.y) * diagonal * scale};
 }
 
-static double third_difference(const Run *r, const L1L2PathConfig *cfg, int t)
+static double third_difference(const Run *r, const Setup *cfg, int t)
 {
     double sum = 0.0;
     for (int k = 0; k < 4; k++) {
@@ -49,7 +49,7 @@ static double third_difference(const Run *r, const L1L2PathConfig *cfg, int t)
 }
 
 /* A third difference at t has P from t - 2 to t + 1. For blend both ends of an overlap are joins. */
-static bool reaches_over_a_join(const L1L2PathConfig *cfg, int t)
+static bool reaches_over_a_join(const Setup *cfg, int t)
 {
     const int every = cfg->window - cfg->overlap;
     const bool starts = t + 1 >= every && (t + 1) % every <= 2;
@@ -57,7 +57,7 @@ static bool reaches_over_a_join(const L1L2PathConfig *cfg, int t)
     return starts || (cfg->join == L1L2STAB_JOIN_BLEND && blended);
 }
 
-static void add_clip(const char *name, L1L2PathConfig cfg, Roughness *all)
+static void add_clip(const char *name, Setup cfg, Roughness *all)
 {
     Run *r = measured_run(name, &cfg);
     run(&cfg, r);
@@ -74,7 +74,7 @@ static void add_clip(const char *name, L1L2PathConfig cfg, Roughness *all)
 START_TEST(joins_of_real_paths_are_no_rougher_than_what_lies_between)
 {
     Roughness blend = {{0}, {0}, {0}}, continuous = {{0}, {0}, {0}};
-    L1L2PathConfig cfg = defaults();
+    Setup cfg = defaults();
     for (size_t i = 0; i < sizeof clips / sizeof *clips; i++) {
         cfg.join = L1L2STAB_JOIN_CONTINUOUS, cfg.overlap = 100;
         add_clip(clips[i], cfg, &continuous);

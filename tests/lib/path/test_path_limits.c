@@ -7,7 +7,7 @@ START_TEST(every_update_transform_stays_inside_whatever_the_motion)
     static const double shakes[] = {1, 20, 200, 2000};
     for (int i = 0; i < 4; i++)
         for (int join = 0; join < 2; join++) {
-            L1L2PathConfig cfg = defaults();
+            Setup cfg = defaults();
             cfg.window = 40, cfg.overlap = join == L1L2STAB_JOIN_BLEND ? 12 : 20;
             cfg.join = (L1L2StabJoin)join;
             cfg.crop_ratio = 0.8;
@@ -25,7 +25,7 @@ END_TEST
 
 START_TEST(numbers_that_no_camera_gives_are_survived)
 {
-    const L1L2PathConfig cfg = defaults();
+    const Setup cfg = defaults();
     const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, 4);
     Run *r = new_run(400);
     int fallbacks = 0;
@@ -46,18 +46,17 @@ END_TEST
 /* With a lambda that is not a number no solver converges, though the motion is an ordinary one. */
 START_TEST(where_no_solver_converges_the_path_goes_on_without_a_jump)
 {
-    const L1L2PathConfig cfg = defaults();
+    Setup cfg = defaults();
     const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, 4);
     Run *r = shaky_run(480, 1.0, 2.0, 8);
-    L1L2Path *path;
-    ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
+    L1L2Path *path = new_path(&cfg, r);
     int pulled = 0, held = 0;
     for (int t = 0; t < r->frames; t++) {
         if (t == 210 || t == 215)
-            l1l2_path_set_lambda(path, t == 210 ? NAN : 0.5);
-        l1l2_path_push(path, &r->F[t], false);
+            cfg.lambda = t == 210 ? NAN : 0.5;
+        push(path, &cfg, &r->F[t], false);
         if (t - pulled + 1 == cfg.window)
-            ck_assert(l1l2_path_pull(path, &r->out[pulled++]));
+            ck_assert(pull(path, r, pulled++));
     }
     for (int t = 1; t < pulled; t++) {
         ck_assert_double_le(l1l2_path_constraint_excess(&crop, &r->out[t].B), 1e-12);
@@ -74,25 +73,24 @@ END_TEST
 
 START_TEST(a_crop_that_changes_is_ramped_and_always_met)
 {
-    const L1L2PathConfig cfg = defaults();
+    Setup cfg = defaults();
     Run *r = shaky_run(500, 1.0, 5.0, 4);
-    L1L2Path *path;
-    ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
+    L1L2Path *path = new_path(&cfg, r);
     int pulled = 0;
     double before = cfg.crop_ratio;
     for (int t = 0; t < r->frames + cfg.window; t++) {
         if (t == 200)
-            l1l2_path_set_crop_ratio(path, 0.6);
+            cfg.crop_ratio = 0.6;
         if (t == 215)
-            l1l2_path_set_crop_ratio(path, 0.95); /* on the way */
+            cfg.crop_ratio = 0.95; /* on the way */
         if (t < r->frames)
-            l1l2_path_push(path, &r->F[t], false);
+            push(path, &cfg, &r->F[t], false);
         else if (t == r->frames)
             l1l2_path_finish(path);
         if (t - pulled + 1 < cfg.window || pulled == r->frames)
             continue;
-        L1L2PathFrame *f = &r->out[pulled];
-        ck_assert(l1l2_path_pull(path, f));
+        const L1L2PathFrame *f = &r->out[pulled];
+        ck_assert(pull(path, r, pulled));
         const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, f->crop_ratio, 4);
         ck_assert_double_le(l1l2_path_constraint_excess(&crop, &f->B), 1e-12);
         ck_assert_double_le(fabs(f->crop_ratio - before), L1L2_CROP_STEP + 1e-12);
@@ -111,18 +109,17 @@ END_TEST
 
 START_TEST(lambda_travels_with_the_frames_it_was_set_for)
 {
-    const L1L2PathConfig cfg = defaults();
+    Setup cfg = defaults();
     Run *r = shaky_run(600, 0.5, 5.0, 4);
-    L1L2Path *path;
-    ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
+    L1L2Path *path = new_path(&cfg, r);
     double left[2] = {0.0, 0.0};
     int pulled = 0;
     for (int t = 0; t < r->frames; t++) {
         if (t == 300)
-            l1l2_path_set_lambda(path, 100.0);
-        l1l2_path_push(path, &r->F[t], false);
+            cfg.lambda = 100.0;
+        push(path, &cfg, &r->F[t], false);
         if (t - pulled + 1 == cfg.window)
-            ck_assert(l1l2_path_pull(path, &r->out[pulled++]));
+            ck_assert(pull(path, r, pulled++));
     }
     for (int t = 2; t < pulled; t++) {
         ck_assert_near(r->out[t].lambda, t < 300 ? 0.5 : 100.0, 0.0);
@@ -136,7 +133,7 @@ END_TEST
 
 START_TEST(a_motion_that_is_none_counts_as_still)
 {
-    const L1L2PathConfig cfg = defaults();
+    const Setup cfg = defaults();
     Run *r = shaky_run(300, 1.0, 4.0, 8);
     r->F[50].m[2] = NAN;
     r->F[120] = l1l2_mat_similarity(0.0, 0.0, 0.0, 0.0);
@@ -150,7 +147,7 @@ END_TEST
 
 START_TEST(a_zoom_of_ten_and_jumps_of_half_a_frame_are_solved)
 {
-    const L1L2PathConfig cfg = defaults();
+    const Setup cfg = defaults();
     const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, 4);
     Run *zoom = wandering_run(450, 0.5, 10.0, 3.0, 5), *jumps = shaky_run(450, 0.5, 3.0, 5);
     for (int t = 100; t < 250; t++)
@@ -177,7 +174,7 @@ START_TEST(a_window_that_does_not_converge_costs_a_bounded_number_of_iterations)
         int window, overlap, frames;
     } cases[] = {{150, 100, 200}, {150, 149, 160}, {60, 40, 140}, {20, 19, 60}, {900, 600, 900}};
     for (int i = 0; i < 5; i++) {
-        L1L2PathConfig cfg = defaults();
+        Setup cfg = defaults();
         cfg.window = cases[i].window, cfg.overlap = cases[i].overlap;
         Run *r = new_run(cases[i].frames);
         int fallbacks = 0;

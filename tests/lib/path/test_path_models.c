@@ -20,9 +20,9 @@ static Run *affine_run(int frames, double linear, uint64_t seed)
     return r;
 }
 
-static L1L2PathConfig config_of(L1L2StabMotionModel model, L1L2StabJoin join)
+static Setup config_of(L1L2StabMotionModel model, L1L2StabJoin join)
 {
-    L1L2PathConfig cfg = defaults();
+    Setup cfg = defaults();
     cfg.window = 60, cfg.overlap = join == L1L2STAB_JOIN_BLEND ? 15 : 40;
     cfg.model = model;
     cfg.join = join;
@@ -41,7 +41,7 @@ START_TEST(every_map_is_of_the_model_and_inside)
 {
     for (int model = L1L2STAB_MOTION_MODEL_TRANSLATION; model <= L1L2STAB_MOTION_MODEL_AFFINE; model++)
         for (int i = 0; i < 6; i++) {
-            const L1L2PathConfig cfg = config_of((L1L2StabMotionModel)model, (L1L2StabJoin)(i % 2));
+            const Setup cfg = config_of((L1L2StabMotionModel)model, (L1L2StabJoin)(i % 2));
             const int dim = l1l2_mat_dim((L1L2StabMotionModel)model);
             const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, dim);
             Run *r = affine_run(200, 0.001 * pow(3.0, i), (uint64_t)i + 1);
@@ -69,7 +69,7 @@ END_TEST
 
 START_TEST(a_translation_never_turns_or_zooms_the_picture)
 {
-    const L1L2PathConfig cfg = config_of(L1L2STAB_MOTION_MODEL_TRANSLATION, L1L2STAB_JOIN_CONTINUOUS);
+    const Setup cfg = config_of(L1L2STAB_MOTION_MODEL_TRANSLATION, L1L2STAB_JOIN_CONTINUOUS);
     Run *r = affine_run(300, 0.02, 3);
     run(&cfg, r);
     for (int t = 0; t < r->frames; t++) {
@@ -85,7 +85,7 @@ END_TEST
 START_TEST(a_richer_model_gives_the_same_path_to_a_poorer_camera)
 {
     for (int model = L1L2STAB_MOTION_MODEL_TRANSLATION; model < L1L2STAB_MOTION_MODEL_AFFINE; model++) {
-        L1L2PathConfig poor = config_of((L1L2StabMotionModel)model, L1L2STAB_JOIN_CONTINUOUS), rich = poor;
+        Setup poor = config_of((L1L2StabMotionModel)model, L1L2STAB_JOIN_CONTINUOUS), rich = poor;
         poor.crop_ratio = rich.crop_ratio = 0.7;
         rich.model = (L1L2StabMotionModel)(model + 1);
         Run *a = wandering_run(300, 0.5, 10.0, 3.0, 5), *b = wandering_run(300, 0.5, 10.0, 3.0, 5);
@@ -102,7 +102,7 @@ END_TEST
 
 START_TEST(what_only_an_affine_map_can_say_is_smoothed_too)
 {
-    const L1L2PathConfig cfg = config_of(L1L2STAB_MOTION_MODEL_AFFINE, L1L2STAB_JOIN_CONTINUOUS);
+    const Setup cfg = config_of(L1L2STAB_MOTION_MODEL_AFFINE, L1L2STAB_JOIN_CONTINUOUS);
     Run *r = affine_run(300, 0.004, 9);
     run(&cfg, r);
     double before = 0.0, after = 0.0;
@@ -122,7 +122,7 @@ START_TEST(where_no_solver_converges_every_model_holds_a_path_inside)
 {
     for (int model = L1L2STAB_MOTION_MODEL_TRANSLATION; model <= L1L2STAB_MOTION_MODEL_AFFINE; model++) {
         const int dim = l1l2_mat_dim((L1L2StabMotionModel)model);
-        L1L2PathConfig cfg = config_of((L1L2StabMotionModel)model, L1L2STAB_JOIN_CONTINUOUS);
+        Setup cfg = config_of((L1L2StabMotionModel)model, L1L2STAB_JOIN_CONTINUOUS);
         cfg.lambda = NAN;
         const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, dim);
         Run *r = affine_run(130, 0.01, 4);

@@ -206,7 +206,7 @@ static int trusted(const L1L2Motion *m, const bool *agrees, L1L2Pair *pairs, boo
 
 /* Each part of the points, in whatever way they are divided, by the others. A shutter alone explains 97 %; parallax and
  * slow movers up to 77 %, of which the camera's motion tells one from the other. */
-static bool explains_all(const L1L2Motion *m, const L1L2ShutterStep *step)
+static bool explains_all(const L1L2Motion *m, const L1L2ShutterMeasurement *step)
 {
     const double alone = 0.8, caused = 0.5, cause = 0.3;
     const double enough = l1l2_shutter_gate_share(&m->cause) >= cause ? caused : alone;
@@ -225,7 +225,7 @@ static void fit_residual(L1L2Motion *m, L1L2SelectedModel *rung, L1L2MotionResul
     L1L2Rng rng = m->rng; /* the next frame has the same as without step 4 */
     const int count = m->points;
     const double threshold = m->ladder.threshold;
-    if (m->shape.model == L1L2STAB_ROLLING_SHUTTER_NONE || m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION)
+    if (m->shape.kind == L1L2STAB_ROLLING_SHUTTER_NONE || m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION)
         return;
     const bool found = rung->model >= L1L2STAB_MOTION_SOURCE_SIMILARITY;
     L1L2Mat F = rung->F;
@@ -249,7 +249,7 @@ static void fit_residual(L1L2Motion *m, L1L2SelectedModel *rung, L1L2MotionResul
     for (int k = 0; k < n; k++)
         m->inlier[from[k]] = m->core[from[k]] = agreeing[k];
     if (!found || (inliers >= most * count && rung->inliers < few * inliers)) {
-        const L1L2Mat rest = l1l2_shutter_residual_split(&m->shape, &out->residual.r);
+        const L1L2Mat rest = l1l2_shutter_residual_extract_similarity(&m->shape, &out->residual.r);
         for (int i = 0; i < 6; i++)
             F.m[i] += rest.m[i];
         *rung = l1l2_motion_model_adopt(&m->ladder, &F, inliers, (double)inliers / count);

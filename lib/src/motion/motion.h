@@ -35,7 +35,7 @@ typedef struct L1L2MotionResult {
     int tracks, inliers;
     double quality;     /* [0, 1], as in L1L2StabInfo */
     bool has_residual;  /* it was measured */
-    L1L2ShutterStep residual; /* of F */
+    L1L2ShutterMeasurement residual; /* of F */
     int64_t scale_ns, track_ns, fit_ns;
 } L1L2MotionResult;
 

@@ -86,7 +86,7 @@ void l1l2_shutter_gate_break(L1L2ShutterGate *cause)
 }
 
 void l1l2_shutter_gate_push(L1L2ShutterGate *cause, const L1L2ShutterModel *shape, const L1L2Mat *F,
-                            L1L2ShutterStep *step)
+                            L1L2ShutterMeasurement *step)
 {
     double explained = 0.0, all = 0.0;
     memmove(cause->F, cause->F + 1, (L1L2_SHUTTER_GATE_FRAMES - 1) * sizeof *cause->F);

@@ -34,7 +34,7 @@ void l1l2_shutter_gate_break(L1L2ShutterGate *cause);
 /* The next frame. step->explained and ->all of WITNESS_CAMERA become those of the frame DELAY frames before: mean
  * squares over the picture; 0 where not all was measured around it. */
 void l1l2_shutter_gate_push(L1L2ShutterGate *cause, const L1L2ShutterModel *shape, const L1L2Mat *F,
-                            L1L2ShutterStep *step);
+                            L1L2ShutterMeasurement *step);
 
 /* Part that the camera explained lately, at most 1. */
 double l1l2_shutter_gate_share(const L1L2ShutterGate *cause);

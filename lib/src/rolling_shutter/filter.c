@@ -24,7 +24,7 @@ static const double max_reach = 0.02, max_stretch = 0.03;
 static const struct {
     int witness;
     double little, enough;
-} gate[] = {{L1L2_SPLIT_HALVES, 0.3, 0.5}, {L1L2_SPLIT_RIMS, 0.0, 0.15}, {L1L2_VALIDATION_CAMERA, 0.15, 0.3}};
+} gate[] = {{L1L2_SPLIT_HALVES, 0.3, 0.5}, {L1L2_SPLIT_COLUMNS, 0.0, 0.15}, {L1L2_VALIDATION_CAMERA, 0.15, 0.3}};
 static const double explained_fade = 0.95;
 
 /* The readout is believed where it explains so much of what the rows do, and where it is possible at all. */
@@ -34,7 +34,7 @@ enum { MIN_FRAMES = 20, AROUND = 4 /* frames before and after one that its share
 
 typedef struct Item {
     L1L2Mat F;
-    L1L2ShutterStep step;
+    L1L2ShutterMeasurement step;
     bool measured;
     double weight; /* w_t */
 } Item;
@@ -113,7 +113,7 @@ static L1L2Point slope(const L1L2ShutterResidual *r)
     L1L2Point sum = {0.0, 0.0};
     double norm = 0.0;
     for (int k = 0; k < L1L2_SHUTTER_BANDS; k++) {
-        const double row = l1l2_shutter_residual_band(k);
+        const double row = l1l2_shutter_band_row(k);
         sum.x += row * r->p[L1L2_SHUTTER_X + k], sum.y += row * r->p[L1L2_SHUTTER_Y + k];
         norm += row * row;
     }
@@ -156,7 +156,8 @@ static double ramp(double value, double from, double to)
 
 double l1l2_shutter_filter_readout(const L1L2ShutterFilter *w)
 {
-    if (!w || w->shape.model != L1L2STAB_ROLLING_SHUTTER_MIXTURE || w->n < MIN_FRAMES || !(w->xx > 0.0 && w->yy > 0.0))
+    if (!w || w->shape.kind != L1L2STAB_ROLLING_SHUTTER_MIXTURE || w->n < MIN_FRAMES ||
+        !(w->xx > 0.0 && w->yy > 0.0))
         return 0.0;
     const double readout = w->xy / w->xx, agreement = w->xy * w->xy / (w->xx * w->yy);
     const double belief = ramp(agreement, min_agreement, full_agreement) *
@@ -180,7 +181,7 @@ static L1L2ShutterResidual guess(const L1L2ShutterFilter *w, int64_t t, double r
         acceleration[i] = out->F.m[entry[i]] - into->F.m[entry[i]];
     }
     for (int b = 0; b < L1L2_SHUTTER_BANDS; b++) {
-        const double time = readout * l1l2_shutter_residual_band(b);
+        const double time = readout * l1l2_shutter_band_row(b);
         k.p[L1L2_SHUTTER_X + b] = time * speed[0] + 0.5 * time * time * acceleration[0];
         k.p[L1L2_SHUTTER_Y + b] = time * speed[1] + 0.5 * time * time * acceleration[1];
     }
@@ -188,7 +189,8 @@ static L1L2ShutterResidual guess(const L1L2ShutterFilter *w, int64_t t, double r
     return k;
 }
 
-void l1l2_shutter_filter_push(L1L2ShutterFilter *w, const L1L2Mat *F, const L1L2ShutterStep *step, bool starts_path)
+void l1l2_shutter_filter_push(L1L2ShutterFilter *w, const L1L2Mat *F, const L1L2ShutterMeasurement *step,
+                              bool starts_path)
 {
     if (!w)
         return;
@@ -202,7 +204,7 @@ void l1l2_shutter_filter_push(L1L2ShutterFilter *w, const L1L2Mat *F, const L1L2
     if (i->measured)
         i->step = *step;
     w->pushed++;
-    if (w->shape.model == L1L2STAB_ROLLING_SHUTTER_MIXTURE)
+    if (w->shape.kind == L1L2STAB_ROLLING_SHUTTER_MIXTURE)
         learn_readout(w);
 }
 
@@ -226,7 +228,7 @@ static double belief(const L1L2ShutterFilter *w, int64_t t, int64_t last)
 static L1L2ShutterResidual estimate(const L1L2ShutterFilter *w, int64_t t)
 {
     enum { LOOKAHEAD = 40 }; /* frames; by then what they say has faded to 0.1 % */
-    const int size = l1l2_shutter_residual_size(&w->shape);
+    const int size = l1l2_shutter_model_size(&w->shape);
     const double readout = l1l2_shutter_filter_readout(w);
     int64_t last = t;
     while (last + 1 < w->pushed && last < t + LOOKAHEAD && item(w, last + 1)->weight > 0.0)

@@ -42,7 +42,8 @@ void l1l2_shutter_filter_free(L1L2ShutterFilter *w);
 void l1l2_shutter_filter_reset(L1L2ShutterFilter *w);
 
 /* The next frame: its motion F, and the residual of F; NULL where that was not measured. */
-void l1l2_shutter_filter_push(L1L2ShutterFilter *w, const L1L2Mat *F, const L1L2ShutterStep *step, bool starts_path);
+void l1l2_shutter_filter_push(L1L2ShutterFilter *w, const L1L2Mat *F, const L1L2ShutterMeasurement *step,
+                              bool starts_path);
 
 /* The residual of the oldest frame, from those that have been pushed; there must be one. It is kept for bend(). */
 const L1L2ShutterResidual *l1l2_shutter_filter_pull(L1L2ShutterFilter *w);

@@ -28,7 +28,7 @@ static void regularise(const L1L2ShutterModel *shape, int count, Normal *normal)
 {
     const double factor = count / usual_count;
     memset(normal, 0, sizeof *normal);
-    if (shape->model != L1L2STAB_ROLLING_SHUTTER_MIXTURE) {
+    if (shape->kind != L1L2STAB_ROLLING_SHUTTER_MIXTURE) {
         for (int i = 0; i < 8; i++)
             normal->A[i][i] = homography_size * factor;
         return;
@@ -122,7 +122,7 @@ static L1L2Point left_by(const Points *points, const L1L2ShutterResidual *fit, i
 static bool refit(const Points *points, double width, const bool *inlier, const L1L2ShutterResidual *fit,
                   L1L2ShutterResidual *out)
 {
-    const int size = l1l2_shutter_residual_size(points->shape);
+    const int size = l1l2_shutter_model_size(points->shape);
     Normal normal;
     regularise(points->shape, points->count, &normal);
     for (int i = 0; i < points->count; i++) {
@@ -130,7 +130,7 @@ static bool refit(const Points *points, double width, const bool *inlier, const 
         L1L2Point at;
         const L1L2Point d = displacement(&points->pairs[i], points->F, &at);
         L1L2Point left = d;
-        l1l2_shutter_residual_basis(points->shape, at, x, y);
+        l1l2_shutter_model_basis(points->shape, at, x, y);
         for (int k = 0; k < size; k++)
             left.x -= x[k] * fit->p[k], left.y -= y[k] * fit->p[k];
         const double weight = inlier ? inlier[i] : trust(left, width);
@@ -169,7 +169,7 @@ static bool refit_rest(const Points *points, int division, int part, double widt
     return refit(&rest, width, NULL, fit, out);
 }
 
-static void validate(const Points *points, int division, double width, L1L2ShutterStep *step)
+static void validate(const Points *points, int division, double width, L1L2ShutterMeasurement *step)
 {
     for (int part = 0; part < parts[division]; part++) {
         L1L2ShutterResidual other = {{0.0}};
@@ -188,7 +188,7 @@ static void validate(const Points *points, int division, double width, L1L2Shutt
 }
 
 int l1l2_shutter_fit(const L1L2ShutterModel *shape, const L1L2Pair *pairs, int count, double threshold,
-                             bool *inlier, const L1L2Mat *F, L1L2ShutterStep *step)
+                             bool *inlier, const L1L2Mat *F, L1L2ShutterMeasurement *step)
 {
     const Points points = {shape, pairs, F, count};
     memset(step, 0, sizeof *step);

@@ -14,6 +14,6 @@
 /* inlier: in, the pairs that agree with F; out, those within `threshold` diagonals of the fit, and their number is
  * returned. 0, *step zero and `inlier` as it was: the inliers lie too close together. */
 int l1l2_shutter_fit(const L1L2ShutterModel *shape, const L1L2Pair *pairs, int count, double threshold,
-                             bool *inlier, const L1L2Mat *F, L1L2ShutterStep *step);
+                             bool *inlier, const L1L2Mat *F, L1L2ShutterMeasurement *step);
 
 #endif

@@ -21,7 +21,7 @@ static void tabulate(Rows *rows, const L1L2ShutterModel *shape, const L1L2Shutte
 {
     rows->shape = *shape;
     rows->residual = *residual;
-    if (shape->model != L1L2STAB_ROLLING_SHUTTER_MIXTURE)
+    if (shape->kind != L1L2STAB_ROLLING_SHUTTER_MIXTURE)
         return;
     for (int i = 0; i < ROWS; i++) {
         const double row = 2.0 * i / (ROWS - 1) - 1.0;
@@ -35,14 +35,14 @@ static void tabulate(Rows *rows, const L1L2ShutterModel *shape, const L1L2Shutte
 static L1L2Point displacement(const Rows *rows, L1L2Point p)
 {
     const double *m = rows->residual.p;
-    if (rows->shape.model != L1L2STAB_ROLLING_SHUTTER_MIXTURE)
+    if (rows->shape.kind != L1L2STAB_ROLLING_SHUTTER_MIXTURE)
         return l1l2_shutter_residual_at(&rows->shape, &rows->residual, p);
     const double row = p.y / (2.0 * rows->shape.half_h);
     const double at = fmin(fmax((row + 1.0) * 0.5 * (ROWS - 1), 0.0), ROWS - 1);
     const int below = at >= ROWS - 1 ? ROWS - 2 : (int)at;
     const L1L2Point a = rows->translation[below], b = rows->translation[below + 1];
     const double part = at - below;
-    const double tilt = m[L1L2_SHUTTER_TILT] * p.x + m[L1L2_SHUTTER_ZOOM];
+    const double tilt = m[L1L2_SHUTTER_PERSPECTIVE] * p.x + m[L1L2_SHUTTER_ZOOM];
     return (L1L2Point){
         a.x + part * (b.x - a.x) - m[L1L2_SHUTTER_ROLL] * p.y + (tilt + m[L1L2_SHUTTER_ZOOM_BY_ROW] * row) * p.x,
         a.y + part * (b.y - a.y) + (m[L1L2_SHUTTER_ROLL] + m[L1L2_SHUTTER_ROLL_BY_ROW] * row) * p.x + tilt * p.y,

@@ -4,12 +4,12 @@
 #include <math.h>
 #include <string.h>
 
-int l1l2_shutter_residual_size(const L1L2ShutterModel *shape)
+int l1l2_shutter_model_size(const L1L2ShutterModel *shape)
 {
-    return shape->model == L1L2STAB_ROLLING_SHUTTER_MIXTURE ? L1L2_SHUTTER_SIZE : 8;
+    return shape->kind == L1L2STAB_ROLLING_SHUTTER_MIXTURE ? L1L2_SHUTTER_SIZE : 8;
 }
 
-double l1l2_shutter_residual_band(int band)
+double l1l2_shutter_band_row(int band)
 {
     return (band + 0.5) / L1L2_SHUTTER_BANDS - 0.5;
 }
@@ -18,7 +18,7 @@ double l1l2_shutter_residual_band(int band)
  * itself falls by e: two exponentials make all. */
 static void weigh_bands(double row, double weight[L1L2_SHUTTER_BANDS])
 {
-    const double place = (fmin(fmax(row, -1.0), 1.0) - l1l2_shutter_residual_band(0)) * L1L2_SHUTTER_BANDS,
+    const double place = (fmin(fmax(row, -1.0), 1.0) - l1l2_shutter_band_row(0)) * L1L2_SHUTTER_BANDS,
                  fall = 0.36787944117144233;
     double gauss = exp(-0.5 * place * place), factor = exp(place - 0.5), sum = 0.0;
     for (int k = 0; k < L1L2_SHUTTER_BANDS; k++) {
@@ -31,12 +31,12 @@ static void weigh_bands(double row, double weight[L1L2_SHUTTER_BANDS])
         weight[k] /= sum;
 }
 
-void l1l2_shutter_residual_basis(const L1L2ShutterModel *shape, L1L2Point p, double x[L1L2_SHUTTER_SIZE],
+void l1l2_shutter_model_basis(const L1L2ShutterModel *shape, L1L2Point p, double x[L1L2_SHUTTER_SIZE],
                          double y[L1L2_SHUTTER_SIZE])
 {
     memset(x, 0, L1L2_SHUTTER_SIZE * sizeof *x);
     memset(y, 0, L1L2_SHUTTER_SIZE * sizeof *y);
-    if (shape->model != L1L2STAB_ROLLING_SHUTTER_MIXTURE) {
+    if (shape->kind != L1L2STAB_ROLLING_SHUTTER_MIXTURE) {
         x[0] = y[3] = p.x;
         x[1] = y[4] = p.y;
         x[2] = y[5] = 1.0;
@@ -52,15 +52,15 @@ void l1l2_shutter_residual_basis(const L1L2ShutterModel *shape, L1L2Point p, dou
     y[L1L2_SHUTTER_ROLL_BY_ROW] = p.x * row;
     x[L1L2_SHUTTER_ZOOM] = p.x, y[L1L2_SHUTTER_ZOOM] = p.y;
     x[L1L2_SHUTTER_ZOOM_BY_ROW] = p.x * row;
-    x[L1L2_SHUTTER_TILT] = p.x * p.x, y[L1L2_SHUTTER_TILT] = p.x * p.y;
+    x[L1L2_SHUTTER_PERSPECTIVE] = p.x * p.x, y[L1L2_SHUTTER_PERSPECTIVE] = p.x * p.y;
 }
 
 L1L2Point l1l2_shutter_residual_at(const L1L2ShutterModel *shape, const L1L2ShutterResidual *r, L1L2Point p)
 {
     double x[L1L2_SHUTTER_SIZE], y[L1L2_SHUTTER_SIZE];
     L1L2Point sum = {0.0, 0.0};
-    l1l2_shutter_residual_basis(shape, p, x, y);
-    for (int i = 0; i < l1l2_shutter_residual_size(shape); i++)
+    l1l2_shutter_model_basis(shape, p, x, y);
+    for (int i = 0; i < l1l2_shutter_model_size(shape); i++)
         sum.x += x[i] * r->p[i], sum.y += y[i] * r->p[i];
     return sum;
 }
@@ -71,10 +71,10 @@ enum { COLUMNS = 5, ROWS = 10, POINTS = COLUMNS * ROWS };
 static L1L2Point sample(const L1L2ShutterModel *shape, int i)
 {
     return (L1L2Point){(2.0 * (i % COLUMNS) / (COLUMNS - 1) - 1.0) * shape->half_w,
-                       2.0 * l1l2_shutter_residual_band(i / COLUMNS) * shape->half_h};
+                       2.0 * l1l2_shutter_band_row(i / COLUMNS) * shape->half_h};
 }
 
-L1L2Mat l1l2_shutter_residual_split(const L1L2ShutterModel *shape, L1L2ShutterResidual *r)
+L1L2Mat l1l2_shutter_residual_extract_similarity(const L1L2ShutterModel *shape, L1L2ShutterResidual *r)
 {
     double a = 0.0, b = 0.0, x = 0.0, y = 0.0, norm = 0.0;
     for (int i = 0; i < POINTS; i++) {
@@ -84,7 +84,7 @@ L1L2Mat l1l2_shutter_residual_split(const L1L2ShutterModel *shape, L1L2ShutterRe
         norm += p.x * p.x + p.y * p.y;
     }
     a /= norm, b /= norm;
-    if (shape->model == L1L2STAB_ROLLING_SHUTTER_MIXTURE) {
+    if (shape->kind == L1L2STAB_ROLLING_SHUTTER_MIXTURE) {
         for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
             r->p[L1L2_SHUTTER_X + k] -= x, r->p[L1L2_SHUTTER_Y + k] -= y;
         r->p[L1L2_SHUTTER_ROLL] -= b, r->p[L1L2_SHUTTER_ZOOM] -= a;

@@ -28,7 +28,7 @@ enum {
     L1L2_SHUTTER_ROLL_BY_ROW,           /* from the first row to the last */
     L1L2_SHUTTER_ZOOM,
     L1L2_SHUTTER_ZOOM_BY_ROW,
-    L1L2_SHUTTER_TILT,
+    L1L2_SHUTTER_PERSPECTIVE,
     L1L2_SHUTTER_SIZE
 };
 
@@ -41,7 +41,7 @@ typedef struct L1L2ShutterResidual {
 enum {
     L1L2_SPLIT_HALVES, /* every second point */
     L1L2_SPLIT_THIRDS, /* of every row: left, middle, right */
-    L1L2_SPLIT_RIMS,   /* of every row: the inner half and the outer */
+    L1L2_SPLIT_COLUMNS,   /* of every row: the inner half and the outer */
     L1L2_SPLITS,
     L1L2_VALIDATION_CAMERA = L1L2_SPLITS,
     L1L2_VALIDATIONS
@@ -49,30 +49,30 @@ enum {
 
 /* From one frame to the next, and how much of the displacements each witness explains, of all: tested on points or a
  * frame left out of the fit, so that noise explains nothing. Sums of squares, weighted. */
-typedef struct L1L2ShutterStep {
+typedef struct L1L2ShutterMeasurement {
     L1L2ShutterResidual r;
     double explained[L1L2_VALIDATIONS], all[L1L2_VALIDATIONS];
-} L1L2ShutterStep;
+} L1L2ShutterMeasurement;
 
 typedef struct L1L2ShutterModel {
-    L1L2StabRollingShutter model; /* HOMOGRAPHY or MIXTURE */
+    L1L2StabRollingShutter kind;  /* HOMOGRAPHY or MIXTURE */
     double half_w, half_h;        /* of the frame */
 } L1L2ShutterModel;
 
 /* Parameters in use. */
-int l1l2_shutter_residual_size(const L1L2ShutterModel *shape);
+int l1l2_shutter_model_size(const L1L2ShutterModel *shape);
 
 /* The middle of a band as a row: -1/2 is the first, 1/2 the last. */
-double l1l2_shutter_residual_band(int band);
+double l1l2_shutter_band_row(int band);
 
 /* The displacement at p is the sum of these by the parameters. */
-void l1l2_shutter_residual_basis(const L1L2ShutterModel *shape, L1L2Point p, double x[L1L2_SHUTTER_SIZE],
+void l1l2_shutter_model_basis(const L1L2ShutterModel *shape, L1L2Point p, double x[L1L2_SHUTTER_SIZE],
                          double y[L1L2_SHUTTER_SIZE]);
 
 L1L2Point l1l2_shutter_residual_at(const L1L2ShutterModel *shape, const L1L2ShutterResidual *r, L1L2Point p);
 
 /* Takes the nearest similarity out of r and returns it, as what is to be added to a map. */
-L1L2Mat l1l2_shutter_residual_split(const L1L2ShutterModel *shape, L1L2ShutterResidual *r);
+L1L2Mat l1l2_shutter_residual_extract_similarity(const L1L2ShutterModel *shape, L1L2ShutterResidual *r);
 
 /* How much longer the frame becomes in one direction than across it, by the nearest affinity: a part of its length. */
 double l1l2_shutter_residual_stretch(const L1L2ShutterModel *shape, const L1L2ShutterResidual *r);

@@ -28,7 +28,7 @@ static L1L2ShutterResidual rows_at(int t, double readout)
     const L1L2Mat mean = motion_at(t, 1.0);
     L1L2ShutterResidual r = {{0.0}};
     for (int k = 0; k < L1L2_SHUTTER_BANDS; k++) {
-        const L1L2Mat own = motion_at(t + readout * l1l2_shutter_residual_band(k), 1.0);
+        const L1L2Mat own = motion_at(t + readout * l1l2_shutter_band_row(k), 1.0);
         r.p[L1L2_SHUTTER_X + k] = own.m[2] - mean.m[2];
         r.p[L1L2_SHUTTER_Y + k] = own.m[5] - mean.m[5];
     }
@@ -40,7 +40,7 @@ static L1L2ShutterResidual mover_at(int t)
 {
     L1L2ShutterResidual r = {{0.0}};
     r.p[L1L2_SHUTTER_ZOOM] = 2.0 * px * sin(2.0 * pi * t / 70.0);
-    r.p[L1L2_SHUTTER_TILT] = -2.0 * px * sin(2.0 * pi * t / 70.0);
+    r.p[L1L2_SHUTTER_PERSPECTIVE] = -2.0 * px * sin(2.0 * pi * t / 70.0);
     return r;
 }
 
@@ -50,7 +50,7 @@ START_TEST(rows_follow_the_camera_whichever_way_they_are_read)
     for (int i = 0; i < 3; i++) {
         L1L2ShutterGate cause = {.known = 0};
         for (int t = 0; t < FRAMES; t++) {
-            L1L2ShutterStep step = {.r = rows_at(t, readouts[i])};
+            L1L2ShutterMeasurement step = {.r = rows_at(t, readouts[i])};
             const L1L2Mat F = motion_at(t, 1.0);
             l1l2_shutter_gate_push(&cause, &shape, &F, &step);
         }
@@ -67,7 +67,7 @@ START_TEST(what_moves_by_itself_does_not_follow_the_camera)
         L1L2ShutterGate cause = {.known = 0};
         double explained = 0.0, all = 0.0;
         for (int t = 0; t < FRAMES; t++) {
-            L1L2ShutterStep step = {.r = mover_at(t)};
+            L1L2ShutterMeasurement step = {.r = mover_at(t)};
             const L1L2Mat F = motion_at(t, strengths[i]);
             l1l2_shutter_gate_push(&cause, &shape, &F, &step);
             explained += step.explained[L1L2_VALIDATION_CAMERA], all += step.all[L1L2_VALIDATION_CAMERA];
@@ -83,7 +83,7 @@ START_TEST(a_shutter_is_told_of_a_frame_two_frames_later)
 {
     L1L2ShutterGate cause = {.known = 0};
     for (int t = 0; t < FRAMES; t++) {
-        L1L2ShutterStep step = {.r = rows_at(t, 0.7)};
+        L1L2ShutterMeasurement step = {.r = rows_at(t, 0.7)};
         if (t < L1L2_SHUTTER_GATE_DELAY)
             memset(&step.r, 0, sizeof step.r);
         const L1L2Mat F = motion_at(t, 1.0);
@@ -97,7 +97,7 @@ START_TEST(what_is_learned_outlives_a_cut_but_nothing_is_told_across_it)
 {
     L1L2ShutterGate cause = {.known = 0};
     for (int t = 0; t < FRAMES; t++) {
-        L1L2ShutterStep step = {.r = rows_at(t, 0.7)};
+        L1L2ShutterMeasurement step = {.r = rows_at(t, 0.7)};
         const L1L2Mat F = motion_at(t, 1.0);
         if (t == 200)
             l1l2_shutter_gate_break(&cause);
@@ -117,7 +117,7 @@ START_TEST(a_lean_is_a_stretch_and_no_similarity_is)
     const L1L2ShutterResidual similar = {{0.02, -0.01, 0.1, 0.01, 0.02, 0.2}};
     L1L2ShutterResidual rows = {{0.0}};
     for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
-        rows.p[L1L2_SHUTTER_X + k] = 0.03 * l1l2_shutter_residual_band(k) * 2.0 * shape.half_h;
+        rows.p[L1L2_SHUTTER_X + k] = 0.03 * l1l2_shutter_band_row(k) * 2.0 * shape.half_h;
     ck_assert_near(l1l2_shutter_residual_stretch(&homography, &lean), 0.03, 1e-12);
     ck_assert_near(l1l2_shutter_residual_stretch(&homography, &longer), 0.03, 1e-12);
     ck_assert_near(l1l2_shutter_residual_stretch(&homography, &similar), 0.0, 1e-12);

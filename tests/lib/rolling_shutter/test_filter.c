@@ -31,12 +31,12 @@ static double camera_at(const Swing *s, double time)
 }
 
 /* What the bands do from frame t to t-1, exactly; F is their mean. */
-static L1L2ShutterStep step_of(const Swing *s, int t, L1L2Mat *F)
+static L1L2ShutterMeasurement step_of(const Swing *s, int t, L1L2Mat *F)
 {
-    L1L2ShutterStep step = {.explained = {1.0, 1.0, 1.0, 1.0}, .all = {1.0, 1.0, 1.0, 1.0}};
+    L1L2ShutterMeasurement step = {.explained = {1.0, 1.0, 1.0, 1.0}, .all = {1.0, 1.0, 1.0, 1.0}};
     double mean = 0.0, x[L1L2_SHUTTER_BANDS];
     for (int k = 0; k < L1L2_SHUTTER_BANDS; k++) {
-        const double at = s->readout * l1l2_shutter_residual_band(k);
+        const double at = s->readout * l1l2_shutter_band_row(k);
         x[k] = camera_at(s, t + at) - camera_at(s, t - 1 + at);
         mean += x[k] / L1L2_SHUTTER_BANDS;
     }
@@ -54,7 +54,7 @@ static double run_swing(const Swing *s, int frames, double *readout, double *wit
     int count = 0;
     for (int t = 0, out = 0; out < frames; t++) {
         L1L2Mat F;
-        const L1L2ShutterStep step = step_of(s, t, &F);
+        const L1L2ShutterMeasurement step = step_of(s, t, &F);
         if (t < frames)
             l1l2_shutter_filter_push(w, &F, t > 0 ? &step : NULL, t == 0);
         if (t < WINDOW - 1)
@@ -62,9 +62,9 @@ static double run_swing(const Swing *s, int frames, double *readout, double *wit
         const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(w);
         double mean = 0.0;
         for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
-            mean += camera_at(s, out + s->readout * l1l2_shutter_residual_band(k)) / L1L2_SHUTTER_BANDS;
+            mean += camera_at(s, out + s->readout * l1l2_shutter_band_row(k)) / L1L2_SHUTTER_BANDS;
         for (int k = 0; k < L1L2_SHUTTER_BANDS && out >= 40; k++, count++) {
-            const double truth = camera_at(s, out + s->readout * l1l2_shutter_residual_band(k)) - mean;
+            const double truth = camera_at(s, out + s->readout * l1l2_shutter_band_row(k)) - mean;
             sum += (e->p[L1L2_SHUTTER_X + k] - truth) * (e->p[L1L2_SHUTTER_X + k] - truth);
             all += truth * truth;
         }
@@ -106,7 +106,7 @@ START_TEST(frames_without_a_measured_residual_and_cuts_end_nothing)
     const Swing swing = {4.0 / diagonal_px, 0.1, 0.7};
     for (int t = 0, out = 0; out < 200; t++) {
         L1L2Mat F;
-        const L1L2ShutterStep step = step_of(&swing, t, &F);
+        const L1L2ShutterMeasurement step = step_of(&swing, t, &F);
         const bool cut = t == 0 || t == 100;
         if (t < 200)
             l1l2_shutter_filter_push(w, &F, cut || t % 17 == 0 ? NULL : &step, cut);
@@ -124,11 +124,11 @@ END_TEST
 /* All witnesses but one. */
 START_TEST(what_not_all_columns_tell_alike_or_the_camera_did_not_cause_changes_nothing)
 {
-    const int silent[] = {L1L2_SPLIT_HALVES, L1L2_SPLIT_RIMS, L1L2_VALIDATION_CAMERA};
+    const int silent[] = {L1L2_SPLIT_HALVES, L1L2_SPLIT_COLUMNS, L1L2_VALIDATION_CAMERA};
     for (int i = 0; i < 3; i++) {
         L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
         const L1L2Mat F = l1l2_mat_translation(0.01, 0.0);
-        L1L2ShutterStep step = {{{0.001, 0.002, 0.003, 0.001}}, {0.9, 0.9, 0.9, 0.9}, {1.0, 1.0, 1.0, 1.0}};
+        L1L2ShutterMeasurement step = {{{0.001, 0.002, 0.003, 0.001}}, {0.9, 0.9, 0.9, 0.9}, {1.0, 1.0, 1.0, 1.0}};
         step.explained[silent[i]] = 0.0;
         for (int t = 0; t < WINDOW; t++)
             l1l2_shutter_filter_push(w, &F, &step, t == 0);
@@ -151,7 +151,7 @@ START_TEST(a_fast_pan_leans_by_3_percent_at_most)
     double most = 0.0;
     for (int t = 0, out = 0; out < 240; t++) {
         L1L2Mat F;
-        const L1L2ShutterStep step = step_of(&swing, t, &F);
+        const L1L2ShutterMeasurement step = step_of(&swing, t, &F);
         F.m[2] += 40.0 / diagonal_px; /* a lean of 28 px, 8 % */
         if (t < 240)
             l1l2_shutter_filter_push(w, &F, t > 0 ? &step : NULL, t == 0);
@@ -171,7 +171,9 @@ START_TEST(what_explains_nothing_changes_nothing)
     const L1L2Mat F = l1l2_mat_translation(0.01, 0.0), map = l1l2_mat_similarity(0.9, 0.01, 3.0, 2.0);
     double reach;
     for (int t = 0; t < WINDOW; t++) {
-        const L1L2ShutterStep step = {{{0.001, 0.002, 0.003, 0.001}}, {-0.1, -0.1, -0.1, -0.1}, {1.0, 1.0, 1.0, 1.0}};
+        const L1L2ShutterMeasurement step = {
+            {{0.001, 0.002, 0.003, 0.001}}, {-0.1, -0.1, -0.1, -0.1}, {1.0, 1.0, 1.0, 1.0},
+        };
         l1l2_shutter_filter_push(w, &F, &step, t == 0);
     }
     for (int t = 0; t < WINDOW; t++) {
@@ -191,7 +193,7 @@ START_TEST(reset_is_as_new)
     for (int run = 0; run < 2; run++) {
         for (int t = 0; t < WINDOW; t++) {
             L1L2Mat F;
-            const L1L2ShutterStep step = step_of(&swing, t, &F);
+            const L1L2ShutterMeasurement step = step_of(&swing, t, &F);
             l1l2_shutter_filter_push(w, &F, &step, t == 0);
         }
         for (int t = 0; t < 30; t++)
@@ -282,7 +284,7 @@ START_TEST(nothing_jumps_where_the_residual_reaches_the_border)
         L1L2ShutterResidual r = {{0.0}};
         for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
             r.p[L1L2_SHUTTER_X + k] = -0.05 * i / diagonal_px; /* to the right, 0.05 px a step */
-        r.p[L1L2_SHUTTER_TILT] = 1e-9;
+        r.p[L1L2_SHUTTER_PERSPECTIVE] = 1e-9;
         ck_assert_double_gt(l1l2_shutter_mesh_set(&mesh[i % 2], &map, &shape, &r, WIDTH, HEIGHT), 0.0);
         for (int k = 0; i > 0 && k < mesh[0].columns * mesh[0].rows; k++) {
             const double way = fabs(mesh[1].node[k].x - mesh[0].node[k].x);

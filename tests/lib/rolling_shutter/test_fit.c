@@ -60,8 +60,8 @@ static L1L2ShutterResidual some_rows(void)
 {
     L1L2ShutterResidual r = {{0.0}};
     for (int k = 0; k < L1L2_SHUTTER_BANDS; k++) {
-        r.p[L1L2_SHUTTER_X + k] = 3.0 * px * sin(4.0 * l1l2_shutter_residual_band(k));
-        r.p[L1L2_SHUTTER_Y + k] = 2.0 * px * sin(4.0 * l1l2_shutter_residual_band(k) + 1.0);
+        r.p[L1L2_SHUTTER_X + k] = 3.0 * px * sin(4.0 * l1l2_shutter_band_row(k));
+        r.p[L1L2_SHUTTER_Y + k] = 2.0 * px * sin(4.0 * l1l2_shutter_band_row(k) + 1.0);
     }
     r.p[L1L2_SHUTTER_ROLL_BY_ROW] = 0.004;
     return r;
@@ -77,7 +77,7 @@ START_TEST(a_homography_is_recovered_with_40_percent_outliers)
             s.pair[k].to.x += uniform(&s.rng, 10, 60) * px;
             s.inlier[k] = false;
         }
-    L1L2ShutterStep step;
+    L1L2ShutterMeasurement step;
     const int inliers = l1l2_shutter_fit(&s.shape, s.pair, MAX, threshold, s.inlier, &F, &step);
     ck_assert_int_ge(inliers, 118);
     ck_assert_int_le(inliers, 121);
@@ -90,7 +90,7 @@ START_TEST(rows_that_move_by_themselves_are_recovered)
     const L1L2Mat F = l1l2_mat_similarity(1.0, 0.002, 0.01, 0.01);
     const L1L2ShutterResidual truth = some_rows();
     Scene s = scene_of(L1L2STAB_ROLLING_SHUTTER_MIXTURE, &F, &truth);
-    L1L2ShutterStep step;
+    L1L2ShutterMeasurement step;
     ck_assert_int_ge(l1l2_shutter_fit(&s.shape, s.pair, MAX, threshold, s.inlier, &F, &step), MAX - 2);
     ck_assert_double_lt(error_px(&s.shape, &step.r, &truth), 0.5);
     for (int division = 0; division < L1L2_SPLITS; division++)
@@ -104,7 +104,7 @@ START_TEST(noise_alone_explains_nothing)
     const L1L2ShutterResidual none = {{0.0}};
     for (int model = L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY; model <= L1L2STAB_ROLLING_SHUTTER_MIXTURE; model++) {
         Scene s = scene_of((L1L2StabRollingShutter)model, &F, &none);
-        L1L2ShutterStep step;
+        L1L2ShutterMeasurement step;
         l1l2_shutter_fit(&s.shape, s.pair, MAX, threshold, s.inlier, &F, &step);
         for (int division = 0; division < L1L2_SPLITS; division++)
             ck_assert_double_lt(step.explained[division], 0.05 * step.all[division]);
@@ -127,7 +127,7 @@ START_TEST(a_mover_of_40_percent_bends_nothing)
                     s.pair[i].to.x += speeds[k] * px;
                     s.inlier[i] = false;
                 }
-            L1L2ShutterStep step;
+            L1L2ShutterMeasurement step;
             l1l2_shutter_fit(&s.shape, s.pair, MAX, threshold, s.inlier, &F, &step);
             ck_assert_double_lt(error_px(&s.shape, &step.r, &none), 0.8);
         }
@@ -144,9 +144,9 @@ START_TEST(what_moves_in_the_middle_of_the_rows_is_not_told_by_their_ends)
         for (int i = 0; i < MAX; i++)
             if (hypot(s.pair[i].from.x, s.pair[i].from.y) < 0.23)
                 s.pair[i].to.x += 1.0 * px;
-        L1L2ShutterStep step;
+        L1L2ShutterMeasurement step;
         l1l2_shutter_fit(&s.shape, s.pair, MAX, threshold, s.inlier, &F, &step);
-        ck_assert_double_lt(step.explained[L1L2_SPLIT_RIMS], 0.0);
+        ck_assert_double_lt(step.explained[L1L2_SPLIT_COLUMNS], 0.0);
     }
 }
 END_TEST
@@ -159,7 +159,7 @@ START_TEST(points_in_one_corner_give_no_residual)
     for (int i = 0; i < MAX; i++)
         s.inlier[i] = s.pair[i].from.x > 0.4 * half_w && s.pair[i].from.y > 0.4 * half_h;
     const bool before = s.inlier[3];
-    L1L2ShutterStep step;
+    L1L2ShutterMeasurement step;
     ck_assert_int_eq(l1l2_shutter_fit(&s.shape, s.pair, MAX, threshold, s.inlier, &F, &step), 0);
     ck_assert_double_eq(l1l2_shutter_residual_reach(&s.shape, &step.r), 0.0);
     ck_assert(s.inlier[3] == before);
@@ -172,12 +172,12 @@ START_TEST(what_is_split_off_leaves_no_similarity)
     for (int model = L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY; model <= L1L2STAB_ROLLING_SHUTTER_MIXTURE; model++) {
         const L1L2ShutterModel shape = {(L1L2StabRollingShutter)model, half_w, half_h};
         L1L2ShutterResidual rest = given[model];
-        const L1L2Mat taken = l1l2_shutter_residual_split(&shape, &rest);
+        const L1L2Mat taken = l1l2_shutter_residual_extract_similarity(&shape, &rest);
         const L1L2Point p = {0.2, -0.1}, whole = l1l2_shutter_residual_at(&shape, &given[model], p);
         const L1L2Point part = l1l2_shutter_residual_at(&shape, &rest, p);
         ck_assert_near(part.x + taken.m[0] * p.x + taken.m[1] * p.y + taken.m[2], whole.x, 1e-12);
         ck_assert_near(part.y + taken.m[3] * p.x + taken.m[4] * p.y + taken.m[5], whole.y, 1e-12);
-        const L1L2Mat again = l1l2_shutter_residual_split(&shape, &rest);
+        const L1L2Mat again = l1l2_shutter_residual_extract_similarity(&shape, &rest);
         for (int i = 0; i < 6; i++)
             ck_assert_near(again.m[i], 0.0, 1e-12);
     }

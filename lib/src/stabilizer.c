@@ -86,7 +86,7 @@ static L1L2StabResult build(L1L2Stab *s)
         .pool = s->pool,
     };
     const L1L2ShutterFilterConfig filter = {cfg->rolling_shutter, cfg->width, cfg->height,
-                                     s->out_width, s->out_height, cfg->window};
+                                     s->out_width, s->out_height, cfg->window, NULL};
     L1L2StabResult result = l1l2_motion_worker_create(&s->worker, &motion, s->pool);
     if (result == L1L2STAB_OK)
         result = l1l2_path_create(&s->path, &path);

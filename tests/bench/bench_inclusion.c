@@ -80,7 +80,7 @@ static void run(const Clip *clip, int model, double ratio, Count *count)
         .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, WINDOW + L1L2_PATH_PAST},
     };
     const L1L2ShutterFilterConfig wobble_cfg = {(L1L2StabRollingShutter)model, clip->width, clip->height, clip->width,
-                                         clip->height, WINDOW};
+                                         clip->height, WINDOW, NULL};
     L1L2Path *path;
     L1L2ShutterFilter *wobble;
     L1L2WarpMesh plain;

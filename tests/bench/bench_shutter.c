@@ -164,7 +164,7 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
         .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
         .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, WINDOW + L1L2_PATH_PAST},
     };
-    const L1L2ShutterFilterConfig wobble_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW};
+    const L1L2ShutterFilterConfig wobble_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW, NULL};
     L1L2Motion *motion = NULL;
     L1L2Path *path = NULL;
     L1L2ShutterFilter *wobble = NULL;

@@ -251,7 +251,8 @@ L1L2SelectedModel l1l2_motion_model_select(L1L2ModelSelection *l, const L1L2Trac
         int in_rows = 0;
         r.inliers = l1l2_ransac(model, pairs, say, count, threshold, rng, inlier, &r.F);
         if (rung == L1L2STAB_MOTION_MODEL_SIMILARITY && r.inliers < most_agree * count) {
-            in_rows = l1l2_shutter_similarity_by_rows(pairs, say.votes, count, v->half_h, threshold, inlier, &r.F);
+            const L1L2ShutterRowTracks tracks = {pairs, say.votes, count, v->half_h, threshold, NULL};
+            in_rows = l1l2_shutter_similarity_by_rows(&tracks, inlier, &r.F);
             r.inliers = in_rows > 0 ? in_rows : r.inliers;
         }
         if (!stands(l, model, v, pairs, count, inlier, &r) || !may_rise(l, model, r.inliers))

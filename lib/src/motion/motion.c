@@ -72,7 +72,7 @@ L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
     m->diagonal_px = hypot(cfg->width, cfg->height);
     const double half_w = 0.5 * cfg->width / m->diagonal_px, half_h = 0.5 * cfg->height / m->diagonal_px;
     const double pixel = 1.0 / hypot(m->width, m->height);
-    m->shape = (L1L2ShutterModel){cfg->rolling_shutter, half_w, half_h};
+    m->shape = (L1L2ShutterModel){cfg->rolling_shutter, half_w, half_h, NULL};
     m->voters = (L1L2TrackWeights){.half_w = half_w, .half_h = half_h};
     m->overlay = (L1L2StaticOverlay){.half_w = half_w, .half_h = half_h, .pixel = pixel};
     /* Where the picture moves as a whole is best told by a similarity: of a picture that turns, translations agree with

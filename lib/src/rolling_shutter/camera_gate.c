@@ -1,107 +1,135 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Recursive least squares with exponential forgetting (Haykin, "Adaptive Filter Theory"; here by normal equations,
+ * which at this size cost less than they would save).
+ *
+ * The residual of frame t is taken to be linear in the motions around it: r_t = W' x_t + noise. x_t holds the
+ * translations of frames t-2 to t+2 and the roll and zoom of frame t, all as lengths. With forgetting factor f, the W
+ * that fits the frames before t minimizes
+ *
+ *     sum_{s<t} f^(t-1-s) |r_s - W' x_s|^2 + ridge^2 |W|^2,     so     W = (XX + ridge^2 I)^-1 XR,
+ *
+ * with XX = sum f^(t-1-s) x_s x_s' and XR = sum f^(t-1-s) x_s r_s'. The prediction for frame t is
+ *
+ *     W' x_t = XR' y,     where     (XX + ridge^2 I) y = x_t:
+ *
+ * one solve with a single right-hand side, whatever the number of residual parameters. Only then is frame t added to
+ * the sums. So each frame is predicted by a regression that has not seen it, and what is explained of it is not a
+ * matter of how many regressors there are: twelve of them explain part of any twelve frames that they were fitted to,
+ * but nothing of the next one.
+ *
+ * The ridge makes the prediction zero while the camera has hardly moved: a handful of frames would otherwise be fitted
+ * exactly by anything.
+ */
 #include "rolling_shutter/camera_gate.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { N = L1L2_SHUTTER_GATE_SIZE };
+#include "common/cholesky.h"
 
-static const double forget = 0.99; /* of what is learned, each frame */
-static const double fade = 0.95;   /* of what was explained */
-/* Diagonals, 8 px at 640x360: motions of so much, all together, do not tell yet. At half of it, a mover that happened
- * to go along with the first 24 frames bent them by 1.2 px, not 0.5; at twice, a shutter was believed too late. */
-static const double least_motion = 0.011;
-/* A turn or zoom moves the frame's points by so many diagonals on average. */
-static const double mean_arm = 0.3;
+enum { N = L1L2_SHUTTER_GATE_SIZE, DELAY = L1L2_SHUTTER_GATE_DELAY, FRAMES = L1L2_SHUTTER_GATE_FRAMES };
 
-/* All translations, and the turn and zoom of the frame itself. */
-static void gather(const L1L2ShutterGate *cause, double x[N])
+/* x_t of the frame in the middle of the history. */
+static void gather_regressors(const L1L2ShutterGate *gate, double arm, double x[N])
 {
-    const L1L2Mat *middle = &cause->F[L1L2_SHUTTER_GATE_DELAY];
-    for (int k = 0; k < L1L2_SHUTTER_GATE_FRAMES; k++)
-        x[2 * k] = cause->F[k].m[2], x[2 * k + 1] = cause->F[k].m[5];
-    x[N - 2] = mean_arm * middle->m[3];
-    x[N - 1] = mean_arm * (middle->m[0] - 1.0);
+    const L1L2Mat *middle = &gate->F[DELAY];
+    for (int k = 0; k < FRAMES; k++)
+        x[2 * k] = gate->F[k].m[2], x[2 * k + 1] = gate->F[k].m[5];
+    x[N - 2] = arm * middle->m[3];
+    x[N - 1] = arm * (middle->m[0] - 1.0);
 }
 
-/* y = (xx + least_motion^2)^-1 x, by Cholesky. */
-static void weigh(const L1L2ShutterGate *cause, const double x[N], double y[N])
+/* y = (XX + ridge^2 I)^-1 x. False where rounding has left no positive definite matrix. */
+static bool solve(const L1L2ShutterGate *gate, double ridge, const double x[N], double y[N])
 {
-    double L[N][N];
-    for (int i = 0; i < N; i++) {
-        y[i] = x[i];
-        for (int j = 0; j <= i; j++) {
-            double sum = cause->xx[i][j] + (i == j ? least_motion * least_motion : 0.0);
-            for (int k = 0; k < j; k++)
-                sum -= L[i][k] * L[j][k];
-            L[i][j] = i == j ? sqrt(fmax(sum, 1e-300)) : sum / L[j][j];
-        }
-        for (int k = 0; k < i; k++)
-            y[i] -= L[i][k] * y[k];
-        y[i] /= L[i][i];
-    }
-    for (int i = N - 1; i >= 0; i--) {
-        for (int k = i + 1; k < N; k++)
-            y[i] -= L[k][i] * y[k];
-        y[i] /= L[i][i];
-    }
+    double A[N][N];
+    memcpy(A, gate->xx, sizeof A);
+    memcpy(y, x, N * sizeof *y);
+    for (int i = 0; i < N; i++)
+        A[i][i] += ridge * ridge;
+    if (!l1l2_cholesky_factorize(&A[0][0], N, N))
+        return false;
+    l1l2_cholesky_solve(&A[0][0], N, N, y);
+    return true;
 }
 
-static double mean_square(const L1L2ShutterModel *shape, const L1L2ShutterResidual *r)
+/* The mean square of a residual's displacements over the picture. */
+static double mean_square(const L1L2ShutterModel *model, const L1L2ShutterResidual *r)
 {
     enum { COLUMNS = 3, ROWS = 5 };
     double sum = 0.0;
     for (int i = 0; i < COLUMNS * ROWS; i++) {
-        const L1L2Point p = {(i % COLUMNS - 1) * 0.9 * shape->half_w, (i / COLUMNS - 2) * 0.45 * shape->half_h};
-        const L1L2Point d = l1l2_shutter_residual_at(shape, r, p);
+        const L1L2Point p = {(i % COLUMNS - 1) * 0.9 * model->half_w, (i / COLUMNS - 2) * 0.45 * model->half_h};
+        const L1L2Point d = l1l2_shutter_residual_at(model, r, p);
         sum += d.x * d.x + d.y * d.y;
     }
     return sum / (COLUMNS * ROWS);
 }
 
-/* The frame in the middle: foretold, compared, and then learned from. */
-static void compare(L1L2ShutterGate *cause, const L1L2ShutterModel *shape, double *explained, double *all)
+/* Predicts the frame in the middle of the history and compares. Returns what the prediction leaves of its residual. */
+static L1L2ShutterResidual prediction_error(const L1L2ShutterGate *gate, double ridge, const double x[N])
 {
-    const L1L2ShutterResidual *r = &cause->r[L1L2_SHUTTER_GATE_DELAY];
-    L1L2ShutterResidual left = *r;
-    double x[N], y[N];
-    gather(cause, x);
-    weigh(cause, x, y);
+    L1L2ShutterResidual left = gate->r[DELAY];
+    double y[N];
+    if (!solve(gate, ridge, x, y))
+        return left;
+    for (int i = 0; i < N; i++)
+        for (int p = 0; p < L1L2_SHUTTER_SIZE; p++)
+            left.p[p] -= y[i] * gate->xr[i][p];
+    return left;
+}
+
+/* Adds the frame in the middle of the history to the sums. */
+static void learn(L1L2ShutterGate *gate, double forget, const double x[N])
+{
+    const L1L2ShutterResidual *r = &gate->r[DELAY];
     for (int i = 0; i < N; i++) {
-        for (int p = 0; p < L1L2_SHUTTER_SIZE; p++) {
-            left.p[p] -= y[i] * cause->xr[i][p];
-            cause->xr[i][p] = forget * cause->xr[i][p] + x[i] * r->p[p];
-        }
+        for (int p = 0; p < L1L2_SHUTTER_SIZE; p++)
+            gate->xr[i][p] = forget * gate->xr[i][p] + x[i] * r->p[p];
         for (int j = 0; j <= i; j++)
-            cause->xx[i][j] = forget * cause->xx[i][j] + x[i] * x[j];
+            gate->xx[i][j] = forget * gate->xx[i][j] + x[i] * x[j];
     }
-    *all = mean_square(shape, r);
-    *explained = *all - mean_square(shape, &left);
 }
 
-void l1l2_shutter_gate_break(L1L2ShutterGate *cause)
+void l1l2_shutter_gate_break(L1L2ShutterGate *gate)
 {
-    cause->known = 0;
-    cause->explained = cause->all = 0.0;
+    gate->known = 0;
+    gate->explained = gate->all = 0.0;
 }
 
-void l1l2_shutter_gate_push(L1L2ShutterGate *cause, const L1L2ShutterModel *shape, const L1L2Mat *F,
-                            L1L2ShutterMeasurement *step)
+void l1l2_shutter_gate_push(L1L2ShutterGate *gate, const L1L2ShutterModel *model, const L1L2Mat *F,
+                            L1L2ShutterMeasurement *measurement)
 {
+    const L1L2ShutterParameters *parameters = l1l2_shutter_parameters_or_default(model->parameters);
     double explained = 0.0, all = 0.0;
-    memmove(cause->F, cause->F + 1, (L1L2_SHUTTER_GATE_FRAMES - 1) * sizeof *cause->F);
-    memmove(cause->r, cause->r + 1, (L1L2_SHUTTER_GATE_FRAMES - 1) * sizeof *cause->r);
-    cause->F[L1L2_SHUTTER_GATE_FRAMES - 1] = *F;
-    cause->r[L1L2_SHUTTER_GATE_FRAMES - 1] = step->r;
-    if (++cause->known >= L1L2_SHUTTER_GATE_FRAMES)
-        compare(cause, shape, &explained, &all);
-    cause->explained = fade * cause->explained + explained;
-    cause->all = fade * cause->all + all;
-    step->explained[L1L2_VALIDATION_CAMERA] = explained;
-    step->all[L1L2_VALIDATION_CAMERA] = all;
+    measurement->explained[L1L2_VALIDATION_CAMERA] = measurement->all[L1L2_VALIDATION_CAMERA] = 0.0;
+    /* The sums would never recover from a NaN. */
+    if (!l1l2_mat_is_finite(F) || !l1l2_shutter_residual_is_finite(&measurement->r)) {
+        l1l2_shutter_gate_break(gate);
+        return;
+    }
+    memmove(gate->F, gate->F + 1, (FRAMES - 1) * sizeof *gate->F);
+    memmove(gate->r, gate->r + 1, (FRAMES - 1) * sizeof *gate->r);
+    gate->F[FRAMES - 1] = *F;
+    gate->r[FRAMES - 1] = measurement->r;
+    if (gate->known < FRAMES)
+        gate->known++;
+    if (gate->known == FRAMES) {
+        double x[N];
+        gather_regressors(gate, parameters->gate_arm, x);
+        const L1L2ShutterResidual left = prediction_error(gate, parameters->gate_ridge, x);
+        all = mean_square(model, &gate->r[DELAY]);
+        explained = all - mean_square(model, &left);
+        learn(gate, parameters->gate_forget, x);
+    }
+    gate->explained = parameters->gate_fade * gate->explained + explained;
+    gate->all = parameters->gate_fade * gate->all + all;
+    measurement->explained[L1L2_VALIDATION_CAMERA] = explained;
+    measurement->all[L1L2_VALIDATION_CAMERA] = all;
 }
 
-double l1l2_shutter_gate_share(const L1L2ShutterGate *cause)
+double l1l2_shutter_gate_share(const L1L2ShutterGate *gate)
 {
-    return cause->all > 0.0 ? cause->explained / cause->all : 0.0;
+    return gate->all > 0.0 ? gate->explained / gate->all : 0.0;
 }

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Whether the camera is the cause of what a similarity leaves of the motions. Rows that are read one after the other,
- * a lens, depth: what these do follows from how the camera moves. What moves by itself does not follow it, however
- * large and slow it is, and wherever in the picture.
+ * The camera gate: how much of the rolling-shutter residual follows from the camera's motion.
  *
- * The residual of each frame is foretold from the camera's motions around it, by least squares over the frames before,
- * which fade. What goes along by chance for a while explains less than nothing soon: it was foretold otherwise.
+ * Rows that are read one after the other, a lens, and depth all leave a residual that is a function of how the camera
+ * moves. A subject that moves by itself leaves one that is not, however large and slow it is, and wherever it is in the
+ * picture. So the residual of each frame is predicted from the camera's motions around it, by a linear regression that
+ * was learned from the frames before. What the prediction explains is the camera's. A residual that follows the camera
+ * by chance soon scores negative, because each frame is predicted before it is learned.
+ *
+ * This is not part of G2011, which limits the homographies' terms instead. Convention: as in model.h.
  */
 #ifndef L1L2_ROLLING_SHUTTER_CAMERA_GATE_H
 #define L1L2_ROLLING_SHUTTER_CAMERA_GATE_H
@@ -13,30 +16,32 @@
 #include "rolling_shutter/model.h"
 
 enum {
-    L1L2_SHUTTER_GATE_DELAY = 2,                       /* frames; motions before and after a frame tell of it */
+    L1L2_SHUTTER_GATE_DELAY = 2, /* frames before and after a frame from whose motions it is predicted */
     L1L2_SHUTTER_GATE_FRAMES = 2 * L1L2_SHUTTER_GATE_DELAY + 1, /* 20 Hz at 30 frames/s need five */
-    L1L2_SHUTTER_GATE_SIZE = 2 * L1L2_SHUTTER_GATE_FRAMES + 2
+    L1L2_SHUTTER_GATE_SIZE = 2 * L1L2_SHUTTER_GATE_FRAMES + 2   /* regressors: all translations, one roll, one zoom */
 };
 
-/* Zeroed is new. */
+/* All zero is a new one. It owns nothing. */
 typedef struct L1L2ShutterGate {
-    double xx[L1L2_SHUTTER_GATE_SIZE][L1L2_SHUTTER_GATE_SIZE]; /* sums, fading; lower triangle */
-    double xr[L1L2_SHUTTER_GATE_SIZE][L1L2_SHUTTER_SIZE];
-    L1L2Mat F[L1L2_SHUTTER_GATE_FRAMES];                /* of the last frames, the newest last */
-    L1L2ShutterResidual r[L1L2_SHUTTER_GATE_FRAMES];
-    int known;                                   /* of them, in a row */
-    double explained, all;                       /* of the frames so far, fading */
+    double xx[L1L2_SHUTTER_GATE_SIZE][L1L2_SHUTTER_GATE_SIZE]; /* faded sum of x x'; lower triangle */
+    double xr[L1L2_SHUTTER_GATE_SIZE][L1L2_SHUTTER_SIZE];      /* faded sum of x r' */
+    L1L2Mat F[L1L2_SHUTTER_GATE_FRAMES];                       /* of the last frames, the newest last */
+    L1L2ShutterResidual r[L1L2_SHUTTER_GATE_FRAMES];           /* the same */
+    int known;             /* frames in a row up to now */
+    double explained, all; /* faded sums over the frames so far */
 } L1L2ShutterGate;
 
-/* What comes is not preceded by what was. What has been learned stays: it is the camera's. */
-void l1l2_shutter_gate_break(L1L2ShutterGate *cause);
+/* Discontinuity: drops the motion history, keeps the regression. It belongs to the camera, which stays the same. */
+void l1l2_shutter_gate_break(L1L2ShutterGate *gate);
 
-/* The next frame. step->explained and ->all of WITNESS_CAMERA become those of the frame DELAY frames before: mean
- * squares over the picture; 0 where not all was measured around it. */
-void l1l2_shutter_gate_push(L1L2ShutterGate *cause, const L1L2ShutterModel *shape, const L1L2Mat *F,
-                            L1L2ShutterMeasurement *step);
+/* Takes the next frame. F: its motion. measurement: in, its residual; out, the sums of L1L2_VALIDATION_CAMERA of the
+ * frame L1L2_SHUTTER_GATE_DELAY frames before it, mean squares over the picture. They are 0 if that frame or one around
+ * it was not measured. Numbers that are not finite count as a discontinuity. */
+void l1l2_shutter_gate_push(L1L2ShutterGate *gate, const L1L2ShutterModel *model, const L1L2Mat *F,
+                            L1L2ShutterMeasurement *measurement);
 
-/* Part that the camera explained lately, at most 1. */
-double l1l2_shutter_gate_share(const L1L2ShutterGate *cause);
+/* The part of the residuals of the last frames that the camera's motion explains, at most 1; negative where the
+ * predictions make it worse; 0 where nothing was compared. */
+double l1l2_shutter_gate_share(const L1L2ShutterGate *gate);
 
 #endif

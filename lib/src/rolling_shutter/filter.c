@@ -1,4 +1,31 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The recursion. The residual of frame t is wanted as soon as the frames up to T are known, with e_{t-1} given, because
+ * that frame has been emitted. The terms of the objective (filter.h) from frame j on, minimized over e_j ... e_T, are a
+ * function of e_{j-1} alone, the cost-to-go V_j. It is quadratic:
+ *
+ *     V_j(e_{j-1}) = q_j |e_{j-1} - r_j|^2 + constant,     with q_{T+1} = 0.
+ *
+ * Proof by induction from j = T + 1 downward. Suppose it holds for j + 1. The terms that contain e_j are
+ *
+ *     w_j |e_j - (e_{j-1} + m_j)|^2  +  leak |e_j - k_j|^2 + q_{j+1} |e_j - r_{j+1}|^2.
+ *
+ * The last two are own |e_j - c|^2 + constant, with own = leak + q_{j+1} and c = (leak k_j + q_{j+1} r_{j+1}) / own.
+ * What remains is a sum of two squares of e_j, whose minimum is at their weighted mean
+ *
+ *     e_j = (own c + w_j (e_{j-1} + m_j)) / (own + w_j)                                                    (1)
+ *
+ * and has the value w_j own / (w_j + own) |e_{j-1} + m_j - c|^2. That is the claim for j, with
+ *
+ *     q_j = w_j own / (w_j + own),     r_j = c - m_j.                                                      (2)
+ *
+ * So one backward pass of (2) from T to t + 1, and (1) for e_t. All weights are scalars, so each parameter of the
+ * residual has the same q and its own r. At the start of a path w is 0: then e_t = c, whatever e_{t-1} was.
+ *
+ * With all w_j = 1 and leak = 0.03, q converges to 0.159, and frame j has 0.84^(j-t) of the influence of frame t: the
+ * filter remembers about 1 / sqrt(leak) = 6 frames each way. A longer memory gathers the errors of the measured
+ * changes; a shorter one leaves slow wobble.
+ */
 #include "rolling_shutter/filter.h"
 
 #include <assert.h>
@@ -7,55 +34,33 @@
 
 #include "common/mem.h"
 #include "rolling_shutter/mesh.h"
-
-/* Of the sum in wobble.h. The memory is 1/sqrt(leak) frames: longer gathers errors, shorter leaves slow wobble. */
-static const double leak = 0.03;
-/* w_t where nothing was measured; it is 0 where a path starts, and else 1. */
-static const double unmeasured = 0.1;
-/* What bends the frame more is scaled down: diagonals, and parts of its length by which it becomes longer one way than
- * across. A fast pan leans by more; the picture shall not be made over, even where that would be right. */
-static const double max_reach = 0.02, max_stretch = 0.03;
-
-/* The differences count as far as each witness explains them, over some frames. Of halves of the points, noise alone
- * explains -6 %, ten real clips 3 to 72 %; where it was under 30 % one got worse. Of what the inner columns do, the
- * outer ones and they explain 10 to 50 % on real clips, 90 % where the shutter is all there is, and less than nothing
- * where something in the middle moved slowly by itself. The camera explains 30 to 80 % on real clips, 80 to 98 % where
- * the shutter is all there is, and of what moves by itself 5 % at most, in 95 of 100 frames. */
-static const struct {
-    int witness;
-    double little, enough;
-} gate[] = {{L1L2_SPLIT_HALVES, 0.3, 0.5}, {L1L2_SPLIT_COLUMNS, 0.0, 0.15}, {L1L2_VALIDATION_CAMERA, 0.15, 0.3}};
-static const double explained_fade = 0.95;
-
-/* The readout is believed where it explains so much of what the rows do, and where it is possible at all. */
-static const double min_agreement = 0.4, full_agreement = 0.6, max_readout = 1.0, impossible_readout = 1.5;
-static const double forget = 0.998; /* each frame: another lens setting, another mode */
-enum { MIN_FRAMES = 20, AROUND = 4 /* frames before and after one that its share in the readout takes */ };
+#include "rolling_shutter/readout.h"
 
 typedef struct Item {
     L1L2Mat F;
-    L1L2ShutterMeasurement step;
+    L1L2ShutterMeasurement measurement; /* zero where there is none */
     bool measured;
-    double weight; /* w_t */
+    double weight; /* w_t: 0 where a path starts, 1 where measured, unmeasured_weight elsewhere */
 } Item;
 
 struct L1L2ShutterFilter {
     L1L2ShutterFilterConfig cfg;
-    L1L2ShutterModel shape;
+    const L1L2ShutterParameters *parameters;
+    L1L2ShutterModel model;
     L1L2WarpMesh mesh;
-    Item *items;          /* frame t at t modulo capacity */
+    Item *items; /* frame t at t modulo capacity */
     int capacity;
     int64_t pushed, pulled;
-    L1L2ShutterResidual last;    /* e of the frame pulled last */
-    L1L2ShutterResidual last_guess; /* k of it */
-    L1L2ShutterResidual given;   /* the same, as it was given out */
-    double explained[L1L2_VALIDATIONS], all[L1L2_VALIDATIONS]; /* of the frames before, fading */
-    double xy, xx, yy, n; /* sums for the readout: accelerations x, changes of the skew y */
+    L1L2ShutterResidual last;           /* e of the frame pulled last */
+    L1L2ShutterResidual last_predicted; /* k of that frame */
+    L1L2ShutterResidual emitted;        /* e of that frame after the limits */
+    double explained[L1L2_VALIDATIONS], all[L1L2_VALIDATIONS]; /* faded sums over the frames pulled */
+    L1L2ShutterReadout readout; /* learned with a mixture only */
 };
 
-static Item *item(const L1L2ShutterFilter *w, int64_t t)
+static Item *item(const L1L2ShutterFilter *filter, int64_t t)
 {
-    return &w->items[t % w->capacity];
+    return &filter->items[t % filter->capacity];
 }
 
 L1L2StabResult l1l2_shutter_filter_create(L1L2ShutterFilter **out, const L1L2ShutterFilterConfig *cfg)
@@ -63,192 +68,178 @@ L1L2StabResult l1l2_shutter_filter_create(L1L2ShutterFilter **out, const L1L2Shu
     *out = NULL;
     if (cfg->model == L1L2STAB_ROLLING_SHUTTER_NONE)
         return L1L2STAB_OK;
-    L1L2ShutterFilter *w = l1l2_mem_new(1, sizeof *w);
-    if (!w)
+    L1L2ShutterFilter *filter = l1l2_mem_new(1, sizeof *filter);
+    if (!filter)
         return L1L2STAB_ERR_NOMEM;
     const double diagonal_px = hypot(cfg->in_width, cfg->in_height);
-    w->cfg = *cfg;
-    w->shape = (L1L2ShutterModel){cfg->model, 0.5 * cfg->in_width / diagonal_px, 0.5 * cfg->in_height / diagonal_px};
-    w->capacity = cfg->capacity + 2 * AROUND + 1;
-    w->items = l1l2_mem_new((size_t)w->capacity, sizeof *w->items);
-    if (!w->items || !l1l2_warp_mesh_init(&w->mesh, cfg->out_width, cfg->out_height)) {
-        l1l2_shutter_filter_free(w);
+    filter->cfg = *cfg;
+    filter->parameters = l1l2_shutter_parameters_or_default(cfg->parameters);
+    filter->model = (L1L2ShutterModel){
+        .kind = cfg->model,
+        .half_w = 0.5 * cfg->in_width / diagonal_px,
+        .half_h = 0.5 * cfg->in_height / diagonal_px,
+        .parameters = cfg->parameters,
+    };
+    filter->capacity = cfg->capacity + L1L2_SHUTTER_READOUT_FRAMES;
+    filter->items = l1l2_mem_new((size_t)filter->capacity, sizeof *filter->items);
+    if (!filter->items || !l1l2_warp_mesh_init(&filter->mesh, cfg->out_width, cfg->out_height)) {
+        l1l2_shutter_filter_free(filter);
         return L1L2STAB_ERR_NOMEM;
     }
-    l1l2_shutter_filter_reset(w);
-    *out = w;
+    l1l2_shutter_filter_reset(filter);
+    *out = filter;
     return L1L2STAB_OK;
 }
 
-void l1l2_shutter_filter_free(L1L2ShutterFilter *w)
+void l1l2_shutter_filter_free(L1L2ShutterFilter *filter)
 {
-    if (!w)
+    if (!filter)
         return;
-    l1l2_mem_free(w->items);
-    l1l2_warp_mesh_clear(&w->mesh);
-    l1l2_mem_free(w);
+    l1l2_mem_free(filter->items);
+    l1l2_warp_mesh_clear(&filter->mesh);
+    l1l2_mem_free(filter);
 }
 
-static void forget_explained(L1L2ShutterFilter *w)
+static void forget_explained(L1L2ShutterFilter *filter)
 {
-    memset(w->explained, 0, sizeof w->explained);
-    memset(w->all, 0, sizeof w->all);
+    memset(filter->explained, 0, sizeof filter->explained);
+    memset(filter->all, 0, sizeof filter->all);
 }
 
-void l1l2_shutter_filter_reset(L1L2ShutterFilter *w)
+void l1l2_shutter_filter_reset(L1L2ShutterFilter *filter)
 {
-    if (!w)
+    if (!filter)
         return;
-    w->pushed = w->pulled = 0;
-    memset(&w->last, 0, sizeof w->last);
-    memset(&w->last_guess, 0, sizeof w->last_guess);
-    memset(&w->given, 0, sizeof w->given);
-    forget_explained(w);
-    w->xy = w->xx = w->yy = w->n = 0.0;
+    filter->pushed = filter->pulled = 0;
+    memset(&filter->last, 0, sizeof filter->last);
+    memset(&filter->last_predicted, 0, sizeof filter->last_predicted);
+    memset(&filter->emitted, 0, sizeof filter->emitted);
+    forget_explained(filter);
+    filter->readout = (L1L2ShutterReadout){0};
 }
 
-/* How fast the bands' translations change with the row, from the first row to the last. */
-static L1L2Point slope(const L1L2ShutterResidual *r)
+/* Adds the newest frame that has enough frames after it to the estimate of the readout. */
+static void learn_readout(L1L2ShutterFilter *filter)
 {
-    L1L2Point sum = {0.0, 0.0};
-    double norm = 0.0;
-    for (int k = 0; k < L1L2_SHUTTER_BANDS; k++) {
-        const double row = l1l2_shutter_band_row(k);
-        sum.x += row * r->p[L1L2_SHUTTER_X + k], sum.y += row * r->p[L1L2_SHUTTER_Y + k];
-        norm += row * row;
-    }
-    return (L1L2Point){sum.x / norm, sum.y / norm};
-}
-
-/* A row's skew is the readout times the camera's speed, so its change is the readout times the acceleration: here the
- * difference of the speeds at frames t-1 and t. Both are low-passed alike, for between frames
- * the path is known only where it is slow. */
-static void learn_readout(L1L2ShutterFilter *w)
-{
-    static const double derivative[5] = {1.0 / 12.0, -8.0 / 12.0, 0.0, 8.0 / 12.0, -1.0 / 12.0};
-    static const double lowpass[5] = {0.0625, 0.25, 0.375, 0.25, 0.0625};
-    const int64_t t = w->pushed - 1 - AROUND;
-    if (t < AROUND)
+    const int64_t t = filter->pushed - 1 - L1L2_SHUTTER_READOUT_DELAY;
+    L1L2ShutterReadoutFrames around;
+    if (t < L1L2_SHUTTER_READOUT_DELAY)
         return;
-    for (int j = -AROUND; j <= AROUND; j++)
-        if (item(w, t + j)->weight < 1.0)
+    for (int j = 0; j < L1L2_SHUTTER_READOUT_FRAMES; j++) {
+        const Item *i = item(filter, t - L1L2_SHUTTER_READOUT_DELAY + j);
+        if (i->weight < 1.0)
             return;
-    L1L2Point x = {0.0, 0.0}, y = {0.0, 0.0};
-    for (int j = -2; j <= 2; j++) {
-        const L1L2Point change = slope(&item(w, t + j)->step.r);
-        for (int k = -2; k <= 2; k++) {
-            const L1L2Mat *F = &item(w, t + j + k)->F;
-            x.x += lowpass[j + 2] * derivative[k + 2] * F->m[2];
-            x.y += lowpass[j + 2] * derivative[k + 2] * F->m[5];
-        }
-        y.x += lowpass[j + 2] * change.x, y.y += lowpass[j + 2] * change.y;
+        around.F[j] = &i->F;
+        around.r[j] = &i->measurement.r;
     }
-    w->xy = forget * w->xy + x.x * y.x + x.y * y.y;
-    w->xx = forget * w->xx + x.x * x.x + x.y * x.y;
-    w->yy = forget * w->yy + y.x * y.x + y.y * y.y;
-    w->n = forget * w->n + 1.0;
+    l1l2_shutter_readout_learn(&filter->readout, filter->parameters, &around);
 }
 
-static double ramp(double value, double from, double to)
+double l1l2_shutter_filter_readout(const L1L2ShutterFilter *filter)
 {
-    return fmin(fmax((value - from) / (to - from), 0.0), 1.0);
+    return filter ? l1l2_shutter_readout_estimate(&filter->readout, filter->parameters) : 0.0;
 }
 
-double l1l2_shutter_filter_readout(const L1L2ShutterFilter *w)
+/*
+ * k_t: the skew that the estimated readout predicts. A row is read at the time tau = readout * row after the frame's
+ * own time, and the camera has moved until then by
+ *
+ *     tau v + tau^2 a / 2,
+ *
+ * where v is the mean of the motions into and out of the frame and a is their difference. The roll is linear in the
+ * row. At the start of a path, and at the newest frame, one of the two motions is missing: the other stands for both.
+ */
+static L1L2ShutterResidual predict(const L1L2ShutterFilter *filter, int64_t t, double readout)
 {
-    if (!w || w->shape.kind != L1L2STAB_ROLLING_SHUTTER_MIXTURE || w->n < MIN_FRAMES ||
-        !(w->xx > 0.0 && w->yy > 0.0))
-        return 0.0;
-    const double readout = w->xy / w->xx, agreement = w->xy * w->xy / (w->xx * w->yy);
-    const double belief = ramp(agreement, min_agreement, full_agreement) *
-                          ramp(-fabs(readout), -impossible_readout, -1.2 * max_readout);
-    return belief * fmin(fmax(readout, -max_readout), max_readout);
-}
-
-/* k_t: the camera's way from the frame's time to each row's, by its speed and acceleration at the frame. */
-static L1L2ShutterResidual guess(const L1L2ShutterFilter *w, int64_t t, double readout)
-{
-    L1L2ShutterResidual k;
-    memset(&k, 0, sizeof k);
+    L1L2ShutterResidual k = {{0.0}};
     if (readout == 0.0)
         return k;
-    const Item *here = item(w, t), *next = t + 1 < w->pushed ? item(w, t + 1) : here;
+    const Item *here = item(filter, t), *next = t + 1 < filter->pushed ? item(filter, t + 1) : here;
     const Item *into = here->weight > 0.0 ? here : next, *out = next->weight > 0.0 ? next : here;
-    const int entry[3] = {2, 5, 3}; /* x, y, sine of the roll */
-    double speed[3], acceleration[3];
+    const int entry[3] = {2, 5, 3}; /* of the matrix: x, y, sine of the roll */
+    double velocity[3], acceleration[3];
     for (int i = 0; i < 3; i++) {
-        speed[i] = 0.5 * (into->F.m[entry[i]] + out->F.m[entry[i]]);
+        velocity[i] = 0.5 * (into->F.m[entry[i]] + out->F.m[entry[i]]);
         acceleration[i] = out->F.m[entry[i]] - into->F.m[entry[i]];
     }
     for (int b = 0; b < L1L2_SHUTTER_BANDS; b++) {
-        const double time = readout * l1l2_shutter_band_row(b);
-        k.p[L1L2_SHUTTER_X + b] = time * speed[0] + 0.5 * time * time * acceleration[0];
-        k.p[L1L2_SHUTTER_Y + b] = time * speed[1] + 0.5 * time * time * acceleration[1];
+        const double tau = readout * l1l2_shutter_band_row(b);
+        k.p[L1L2_SHUTTER_X + b] = tau * velocity[0] + 0.5 * tau * tau * acceleration[0];
+        k.p[L1L2_SHUTTER_Y + b] = tau * velocity[1] + 0.5 * tau * tau * acceleration[1];
     }
-    k.p[L1L2_SHUTTER_ROLL_BY_ROW] = readout * speed[2];
+    k.p[L1L2_SHUTTER_ROLL_BY_ROW] = readout * velocity[2];
     return k;
 }
 
-void l1l2_shutter_filter_push(L1L2ShutterFilter *w, const L1L2Mat *F, const L1L2ShutterMeasurement *step,
+void l1l2_shutter_filter_push(L1L2ShutterFilter *filter, const L1L2Mat *F, const L1L2ShutterMeasurement *measurement,
                               bool starts_path)
 {
-    if (!w)
+    if (!filter)
         return;
-    assert(w->pushed - w->pulled < w->cfg.capacity);
-    Item *i = item(w, w->pushed);
+    assert(filter->pushed - filter->pulled < filter->cfg.capacity);
+    Item *i = item(filter, filter->pushed);
     memset(i, 0, sizeof *i);
-    starts_path = starts_path || w->pushed == 0;
+    starts_path = starts_path || filter->pushed == 0;
     i->F = starts_path ? l1l2_mat_identity() : *F;
-    i->measured = step && !starts_path;
-    i->weight = starts_path ? 0.0 : step ? 1.0 : unmeasured;
+    i->measured = measurement && !starts_path && l1l2_shutter_residual_is_finite(&measurement->r);
+    i->weight = starts_path ? 0.0 : i->measured ? 1.0 : filter->parameters->unmeasured_weight;
     if (i->measured)
-        i->step = *step;
-    w->pushed++;
-    if (w->shape.kind == L1L2STAB_ROLLING_SHUTTER_MIXTURE)
-        learn_readout(w);
+        i->measurement = *measurement;
+    filter->pushed++;
+    if (filter->model.kind == L1L2STAB_ROLLING_SHUTTER_MIXTURE)
+        learn_readout(filter);
 }
 
-/* How far the differences count around frame t, [0, 1]. */
-static double belief(const L1L2ShutterFilter *w, int64_t t, int64_t last)
+/* The confidence in the measured changes around frame t, [0, 1]: the least of the validation tests'. Each test takes
+ * the part that it explains of the frames before t and of those up to `last`, with weights that fade with the
+ * distance. */
+static double confidence(const L1L2ShutterFilter *filter, int64_t t, int64_t last)
 {
+    const L1L2ShutterParameters *parameters = filter->parameters;
+    const struct {
+        int test;
+        L1L2ShutterRamp ramp;
+    } gates[] = {
+        {L1L2_SPLIT_HALVES, parameters->halves},
+        {L1L2_SPLIT_COLUMNS, parameters->columns},
+        {L1L2_VALIDATION_CAMERA, parameters->camera},
+    };
     double least = 1.0;
-    for (int k = 0; k < (int)(sizeof gate / sizeof *gate); k++) {
-        const int witness = gate[k].witness;
-        double explained = w->explained[witness], all = w->all[witness], fade = 1.0;
-        for (int64_t j = t; j <= last; j++, fade *= explained_fade) {
-            explained += fade * item(w, j)->step.explained[witness];
-            all += fade * item(w, j)->step.all[witness];
+    for (int k = 0; k < (int)(sizeof gates / sizeof *gates); k++) {
+        const int test = gates[k].test;
+        double explained = filter->explained[test], all = filter->all[test], fade = 1.0;
+        for (int64_t j = t; j <= last; j++, fade *= parameters->confidence_fade) {
+            explained += fade * item(filter, j)->measurement.explained[test];
+            all += fade * item(filter, j)->measurement.all[test];
         }
-        least = fmin(least, all > 0.0 ? ramp(explained / all, gate[k].little, gate[k].enough) : 0.0);
+        least = fmin(least, all > 0.0 ? l1l2_shutter_ramp(explained / all, gates[k].ramp) : 0.0);
     }
     return least;
 }
 
-/* Given e_{t-1}, all that comes after frame t costs q |e_t - r|^2 and a constant: found from the end backwards. */
-static L1L2ShutterResidual estimate(const L1L2ShutterFilter *w, int64_t t)
+/* e_t, by the recursion at the top of this file. The change m_j of a frame is the measured one as far as there is
+ * confidence in it, and for the rest the predicted one, k_j - k_{j-1}. */
+static L1L2ShutterResidual estimate(const L1L2ShutterFilter *filter, int64_t t)
 {
-    enum { LOOKAHEAD = 40 }; /* frames; by then what they say has faded to 0.1 % */
-    const int size = l1l2_shutter_model_size(&w->shape);
-    const double readout = l1l2_shutter_filter_readout(w);
-    int64_t last = t;
-    while (last + 1 < w->pushed && last < t + LOOKAHEAD && item(w, last + 1)->weight > 0.0)
+    const int size = l1l2_shutter_model_size(&filter->model);
+    const double readout = l1l2_shutter_filter_readout(filter), leak = filter->parameters->leak;
+    const int64_t farthest = t + filter->parameters->lookahead;
+    int64_t last = t; /* of the path, as far as it is known and matters */
+    while (last + 1 < filter->pushed && last < farthest && item(filter, last + 1)->weight > 0.0)
         last++;
-    const double believed = belief(w, t, last);
+    const double trusted = confidence(filter, t, last);
     double q = 0.0;
-    L1L2ShutterResidual k = guess(w, last, readout), r, e;
-    memset(&r, 0, sizeof r);
-    memset(&e, 0, sizeof e);
+    L1L2ShutterResidual k = predict(filter, last, readout), r = {{0.0}}, e = {{0.0}};
     for (int64_t j = last; j >= t; j--) {
-        const Item *i = item(w, j);
-        const L1L2ShutterResidual before = j > t ? guess(w, j - 1, readout) : w->last_guess;
-        const double own = leak + q; /* of e_j, when e_{j-1} is left out */
-        const double measured = i->measured ? believed : 0.0;
+        const Item *i = item(filter, j);
+        const L1L2ShutterResidual before = j > t ? predict(filter, j - 1, readout) : filter->last_predicted;
+        const double own = leak + q, measured = i->measured ? trusted : 0.0;
         for (int p = 0; p < size; p++) {
-            const double centre = (leak * k.p[p] + q * r.p[p]) / own;
-            const double step = measured * i->step.r.p[p] + (1.0 - measured) * (k.p[p] - before.p[p]);
+            const double c = (leak * k.p[p] + q * r.p[p]) / own;
+            const double m = measured * i->measurement.r.p[p] + (1.0 - measured) * (k.p[p] - before.p[p]);
             if (j == t)
-                e.p[p] = (own * centre + i->weight * (w->last.p[p] + step)) / (own + i->weight);
-            r.p[p] = centre - step;
+                e.p[p] = (own * c + i->weight * (filter->last.p[p] + m)) / (own + i->weight);
+            r.p[p] = c - m;
         }
         q = i->weight * own / (i->weight + own);
         k = before;
@@ -256,39 +247,53 @@ static L1L2ShutterResidual estimate(const L1L2ShutterFilter *w, int64_t t)
     return e;
 }
 
-const L1L2ShutterResidual *l1l2_shutter_filter_pull(L1L2ShutterFilter *w)
+/* Scales a residual down that displaces or stretches the frame by more than it may. */
+static L1L2ShutterResidual limited(const L1L2ShutterFilter *filter, L1L2ShutterResidual e)
 {
-    if (!w)
-        return NULL;
-    assert(w->pulled < w->pushed);
-    const Item *now = item(w, w->pulled);
-    if (now->weight == 0.0)
-        forget_explained(w);
-    w->given = w->last = estimate(w, w->pulled);
-    w->last_guess = guess(w, w->pulled, l1l2_shutter_filter_readout(w));
-    for (int k = 0; k < L1L2_VALIDATIONS; k++) {
-        w->explained[k] = explained_fade * (w->explained[k] + now->step.explained[k]);
-        w->all[k] = explained_fade * (w->all[k] + now->step.all[k]);
-    }
-    w->pulled++;
-    const double excess = fmax(l1l2_shutter_residual_reach(&w->shape, &w->last) / max_reach,
-                               l1l2_shutter_residual_stretch(&w->shape, &w->last) / max_stretch);
+    const double excess = fmax(l1l2_shutter_residual_reach(&filter->model, &e) / filter->parameters->max_reach,
+                               l1l2_shutter_residual_stretch(&filter->model, &e) / filter->parameters->max_stretch);
     for (int p = 0; p < L1L2_SHUTTER_SIZE && excess > 1.0; p++)
-        w->given.p[p] /= excess;
-    return &w->given;
+        e.p[p] /= excess;
+    return e;
 }
 
-const L1L2WarpMesh *l1l2_shutter_filter_mesh(L1L2ShutterFilter *w, const L1L2Mat *map, double part, double *reach_px)
+const L1L2ShutterResidual *l1l2_shutter_filter_pull(L1L2ShutterFilter *filter)
+{
+    if (!filter)
+        return NULL;
+    assert(filter->pulled < filter->pushed);
+    const Item *now = item(filter, filter->pulled);
+    if (now->weight == 0.0)
+        forget_explained(filter);
+    filter->last = estimate(filter, filter->pulled);
+    filter->last_predicted = predict(filter, filter->pulled, l1l2_shutter_filter_readout(filter));
+    filter->emitted = limited(filter, filter->last);
+    /* Motions that the caller gave may be so large that sums of them overflow. The next frames start from here. */
+    if (!l1l2_shutter_residual_is_finite(&filter->emitted) ||
+        !l1l2_shutter_residual_is_finite(&filter->last_predicted))
+        filter->last = filter->last_predicted = filter->emitted = (L1L2ShutterResidual){{0.0}};
+    for (int k = 0; k < L1L2_VALIDATIONS; k++) {
+        const double fade = filter->parameters->confidence_fade;
+        filter->explained[k] = fade * (filter->explained[k] + now->measurement.explained[k]);
+        filter->all[k] = fade * (filter->all[k] + now->measurement.all[k]);
+    }
+    filter->pulled++;
+    return &filter->emitted;
+}
+
+const L1L2WarpMesh *l1l2_shutter_filter_mesh(L1L2ShutterFilter *filter, const L1L2Mat *map, double part,
+                                             double *reach_px)
 {
     *reach_px = 0.0;
-    if (!w)
+    if (!filter)
         return NULL;
-    L1L2ShutterResidual residual = w->given;
+    L1L2ShutterResidual residual = filter->emitted;
     for (int p = 0; p < L1L2_SHUTTER_SIZE; p++)
         residual.p[p] *= part;
-    const double reach = l1l2_shutter_mesh_set(&w->mesh, map, &w->shape, &residual, w->cfg.in_width, w->cfg.in_height);
+    const double reach = l1l2_shutter_mesh_set(&filter->mesh, map, &filter->model, &residual,
+                                               filter->cfg.in_width, filter->cfg.in_height);
     if (!(reach > 0.0))
         return NULL;
     *reach_px = reach;
-    return &w->mesh;
+    return &filter->mesh;
 }

@@ -1,50 +1,67 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The fit minimizes, over the parameters p of the residual r,
+ *
+ *     sum_i w_i |d_i - r(x_i)|^2 + (count / 200) (penalties of p),
+ *
+ * where d_i is the part of track i's motion that F does not explain, at the middle x_i of the track. The weights are
+ * Geman and McClure's, w = 1 / (1 + |left|^2 / scale^2)^2, where `left` is what the fit of the round before leaves of
+ * d_i. Each round solves normal equations; the scale shrinks in the last rounds. The first round has no fit yet: it
+ * takes the tracks that agree with F, all with weight 1, so that a subject that moves by itself has no influence on the
+ * start.
+ *
+ * The penalties pull the parameters to zero and smooth the bands along the rows. Bands without tracks then follow their
+ * neighbors, and a few tracks alone change nothing. They grow with the number of tracks, so that the same scene gives
+ * the same fit whatever the number of tracks on it.
+ */
 #include "rolling_shutter/fit.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "fit/least_squares.h"
+#include "common/cholesky.h"
 
 enum { N = L1L2_SHUTTER_SIZE };
 
-/* Against a point's weight of 1. A second difference of the bands costs `bending`: at less, noise bends the rows; at
- * more, 20 Hz are too fast for it (docs/rolling-shutter.md). */
-static const double bending = 3.0, band_size = 0.1, other_size = 0.3, homography_size = 0.05;
-static const double usual_count = 200.0; /* points for which these hold */
+/* The number of tracks for which the parameters state the penalties' weights. */
+static const double reference_count = 200.0;
 
-/* The scale of Geman and McClure's weights, inlier thresholds, one round each. */
-static const double scale[] = {1.0, 1.0, 1.0, 0.7, 0.7};
-enum { ROUNDS = sizeof scale / sizeof *scale };
+/* What all steps of one fit share. */
+typedef struct Tracks {
+    const L1L2ShutterModel *model;
+    const L1L2ShutterParameters *parameters;
+    const L1L2Pair *pairs;
+    const L1L2Mat *F;
+    int count;
+} Tracks;
 
-/* The points have to lie in so many of the frame's cells (MediaPipe asks for 30 %). */
-static const double min_coverage = 0.3;
-
+/* Normal equations A p = b: the lower triangle of A. */
 typedef struct Normal {
-    double A[N][N], b[N]; /* lower triangle */
+    double A[N][N], b[N];
 } Normal;
 
-static void regularise(const L1L2ShutterModel *shape, int count, Normal *normal)
+static void add_penalties(const Tracks *tracks, int count, Normal *normal)
 {
-    const double factor = count / usual_count;
-    memset(normal, 0, sizeof *normal);
-    if (shape->kind != L1L2STAB_ROLLING_SHUTTER_MIXTURE) {
+    const L1L2ShutterParameters *parameters = tracks->parameters;
+    const double factor = count / reference_count;
+    if (tracks->model->kind != L1L2STAB_ROLLING_SHUTTER_MIXTURE) {
         for (int i = 0; i < 8; i++)
-            normal->A[i][i] = homography_size * factor;
+            normal->A[i][i] += parameters->homography_weight * factor;
         return;
     }
     for (int i = 0; i < N; i++)
-        normal->A[i][i] = (i < L1L2_SHUTTER_ROLL ? band_size : other_size) * factor;
+        normal->A[i][i] +=
+            (i < L1L2_SHUTTER_ROLL ? parameters->translation_weight : parameters->linear_weight) * factor;
     for (int first = 0; first < L1L2_SHUTTER_ROLL; first += L1L2_SHUTTER_BANDS)
         for (int k = first; k + 2 < first + L1L2_SHUTTER_BANDS; k++) {
             static const double difference[3] = {1.0, -2.0, 1.0};
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j <= i; j++)
-                    normal->A[k + i][k + j] += bending * factor * difference[i] * difference[j];
+                    normal->A[k + i][k + j] += parameters->bend_weight * factor * difference[i] * difference[j];
         }
 }
 
-/* One coordinate of one point. Half of a mixture's basis is zero. */
+/* Adds one coordinate of one track. Half of a mixture's basis is zero: those products are left out. */
 static void add_row(Normal *normal, const double *basis, int size, double weight, double value)
 {
     int used[N], count = 0;
@@ -59,95 +76,50 @@ static void add_row(Normal *normal, const double *basis, int size, double weight
     }
 }
 
-/* Cholesky, in place. */
-static bool solve(Normal *normal, int size, double x[N])
+/* Leaves the solution in *fit. False if there is none, or it is not finite. */
+static bool solve(Normal *normal, int size, L1L2ShutterResidual *fit)
 {
-    for (int i = 0; i < size; i++) {
-        for (int j = 0; j <= i; j++) {
-            double sum = normal->A[i][j];
-            for (int k = 0; k < j; k++)
-                sum -= normal->A[i][k] * normal->A[j][k];
-            if (i == j && !(sum > 0.0))
-                return false;
-            normal->A[i][j] = i == j ? sqrt(sum) : sum / normal->A[j][j];
-        }
-        double sum = normal->b[i];
-        for (int k = 0; k < i; k++)
-            sum -= normal->A[i][k] * x[k];
-        x[i] = sum / normal->A[i][i];
-    }
-    for (int i = size - 1; i >= 0; i--) {
-        for (int k = i + 1; k < size; k++)
-            x[i] -= normal->A[k][i] * x[k];
-        x[i] /= normal->A[i][i];
-    }
+    if (!l1l2_cholesky_factorize(&normal->A[0][0], size, N))
+        return false;
+    l1l2_cholesky_solve(&normal->A[0][0], size, N, normal->b);
     for (int i = 0; i < size; i++)
-        if (!isfinite(x[i]))
-            return false;
-    return true;
+        fit->p[i] = normal->b[i];
+    return l1l2_shutter_residual_is_finite(fit);
 }
 
-/* Where a pair's displacement is counted, and how long it is. */
-static L1L2Point displacement(const L1L2Pair *pair, const L1L2Mat *F, L1L2Point *at)
+/* What F leaves of track i's motion, and the position at which it counts: the middle of the track. */
+static L1L2Point displacement(const Tracks *tracks, int i, L1L2Point *at)
 {
-    const L1L2Point moved = l1l2_mat_apply(F, pair->from);
+    const L1L2Pair *pair = &tracks->pairs[i];
+    const L1L2Point moved = l1l2_mat_apply(tracks->F, pair->from);
     *at = (L1L2Point){0.5 * (pair->from.x + pair->to.x), 0.5 * (pair->from.y + pair->to.y)};
     return (L1L2Point){pair->to.x - moved.x, pair->to.y - moved.y};
 }
 
-typedef struct Points {
-    const L1L2ShutterModel *shape;
-    const L1L2Pair *pairs;
-    const L1L2Mat *F;
-    int count;
-} Points;
-
-/* The weight of a displacement that the fit leaves so much of. */
-static double trust(L1L2Point left, double width)
+/* What F and the fit leave of track i's motion. *d: what F alone leaves. */
+static L1L2Point remainder_of(const Tracks *tracks, const L1L2ShutterResidual *fit, int i, L1L2Point *d)
 {
-    const double ratio = 1.0 / (1.0 + (left.x * left.x + left.y * left.y) / (width * width));
+    L1L2Point at;
+    *d = displacement(tracks, i, &at);
+    const L1L2Point r = l1l2_shutter_residual_at(tracks->model, fit, at);
+    return (L1L2Point){d->x - r.x, d->y - r.y};
+}
+
+/* Geman and McClure's weight of a track that a fit leaves so far off. */
+static double robust_weight(L1L2Point left, double scale)
+{
+    const double ratio = 1.0 / (1.0 + (left.x * left.x + left.y * left.y) / (scale * scale));
     return ratio * ratio;
 }
 
-static L1L2Point left_by(const Points *points, const L1L2ShutterResidual *fit, int i, L1L2Point *moved)
-{
-    L1L2Point at;
-    *moved = displacement(&points->pairs[i], points->F, &at);
-    const L1L2Point r = l1l2_shutter_residual_at(points->shape, fit, at);
-    return (L1L2Point){moved->x - r.x, moved->y - r.y};
-}
+/* How the validation tests split the tracks. A shutter moves all of a row alike; a subject that moves by itself has a
+ * left and a right edge. So two of the splits are by columns. */
+static const int split_parts[L1L2_SPLITS] = {2, 3, 2};
 
-/* One round, with weights by what `fit` leaves of them; where there is no fit yet, all of `inlier` weigh the same, and
- * what moves by itself has no say in the beginning. */
-static bool refit(const Points *points, double width, const bool *inlier, const L1L2ShutterResidual *fit,
-                  L1L2ShutterResidual *out)
+static int part_of(const Tracks *tracks, int split, int i)
 {
-    const int size = l1l2_shutter_model_size(points->shape);
-    Normal normal;
-    regularise(points->shape, points->count, &normal);
-    for (int i = 0; i < points->count; i++) {
-        double x[N], y[N];
-        L1L2Point at;
-        const L1L2Point d = displacement(&points->pairs[i], points->F, &at);
-        L1L2Point left = d;
-        l1l2_shutter_model_basis(points->shape, at, x, y);
-        for (int k = 0; k < size; k++)
-            left.x -= x[k] * fit->p[k], left.y -= y[k] * fit->p[k];
-        const double weight = inlier ? inlier[i] : trust(left, width);
-        add_row(&normal, x, size, weight, d.x);
-        add_row(&normal, y, size, weight, d.y);
-    }
-    return solve(&normal, size, out->p);
-}
-
-/* The parts of a division, each of which the rest has to tell. A shutter bends all of a row alike; what moves by itself
- * has a width. */
-static const int parts[L1L2_SPLITS] = {2, 3, 2};
-
-static int part_of(const Points *points, int division, int i)
-{
-    const double x = points->pairs[i].from.x / points->shape->half_w;
-    switch (division) {
+    const double x = tracks->pairs[i].from.x / tracks->model->half_w;
+    switch (split) {
     case L1L2_SPLIT_HALVES:
         return i % 2;
     case L1L2_SPLIT_THIRDS:
@@ -157,60 +129,103 @@ static int part_of(const Points *points, int division, int i)
     }
 }
 
-/* One round on all but one part, with weights by what `fit` leaves. */
-static bool refit_rest(const Points *points, int division, int part, double width, const L1L2ShutterResidual *fit,
-                       L1L2ShutterResidual *out)
+/* Which tracks a round uses: all but those of one part of a split; split < 0: all. */
+typedef struct LeftOut {
+    int split, part;
+} LeftOut;
+
+static const LeftOut none_left_out = {-1, 0};
+
+/* One round. Weights: if `inlier` is given, 1 for inliers and 0 for the others; else by what `before` leaves. */
+static bool refit(const Tracks *tracks, LeftOut left_out, const bool *inlier, double scale,
+                  const L1L2ShutterResidual *before, L1L2ShutterResidual *fit)
 {
-    L1L2Pair pairs[L1L2_RANSAC_MAX_PAIRS];
-    Points rest = {points->shape, pairs, points->F, 0};
-    for (int i = 0; i < points->count; i++)
-        if (part_of(points, division, i) != part)
-            pairs[rest.count++] = points->pairs[i];
-    return refit(&rest, width, NULL, fit, out);
+    const int size = l1l2_shutter_model_size(tracks->model);
+    int used = 0;
+    Normal normal;
+    memset(&normal, 0, sizeof normal);
+    for (int i = 0; i < tracks->count; i++)
+        used += left_out.split < 0 || part_of(tracks, left_out.split, i) != left_out.part;
+    add_penalties(tracks, used, &normal);
+    for (int i = 0; i < tracks->count; i++) {
+        if (left_out.split >= 0 && part_of(tracks, left_out.split, i) == left_out.part)
+            continue;
+        double x[N], y[N];
+        L1L2Point at;
+        const L1L2Point d = displacement(tracks, i, &at);
+        L1L2Point left = d;
+        l1l2_shutter_model_basis(tracks->model, at, x, y);
+        for (int k = 0; k < size; k++)
+            left.x -= x[k] * before->p[k], left.y -= y[k] * before->p[k];
+        const double weight = inlier ? inlier[i] : robust_weight(left, scale);
+        add_row(&normal, x, size, weight, d.x);
+        add_row(&normal, y, size, weight, d.y);
+    }
+    return solve(&normal, size, fit);
 }
 
-static void validate(const Points *points, int division, double width, L1L2ShutterMeasurement *step)
+/* Adds one split's sums to the measurement: each part is predicted by a fit to the others. That fit is one round,
+ * weighted by what the whole fit leaves. */
+static void validate(const Tracks *tracks, int split, double scale, L1L2ShutterMeasurement *measurement)
 {
-    for (int part = 0; part < parts[division]; part++) {
-        L1L2ShutterResidual other = {{0.0}};
-        if (!refit_rest(points, division, part, width, &step->r, &other))
+    const L1L2ShutterResidual *whole = &measurement->r;
+    for (int part = 0; part < split_parts[split]; part++) {
+        L1L2ShutterResidual others = {{0.0}};
+        if (!refit(tracks, (LeftOut){split, part}, NULL, scale, whole, &others))
             continue;
-        for (int i = 0; i < points->count; i++) {
-            if (part_of(points, division, i) != part)
+        for (int i = 0; i < tracks->count; i++) {
+            if (part_of(tracks, split, i) != part)
                 continue;
             L1L2Point d;
-            const double weight = trust(left_by(points, &step->r, i, &d), width);
-            const L1L2Point left = left_by(points, &other, i, &d);
-            step->all[division] += weight * (d.x * d.x + d.y * d.y);
-            step->explained[division] += weight * (d.x * d.x + d.y * d.y - left.x * left.x - left.y * left.y);
+            const double weight = robust_weight(remainder_of(tracks, whole, i, &d), scale);
+            const L1L2Point left = remainder_of(tracks, &others, i, &d);
+            measurement->all[split] += weight * (d.x * d.x + d.y * d.y);
+            measurement->explained[split] += weight * (d.x * d.x + d.y * d.y - left.x * left.x - left.y * left.y);
         }
     }
 }
 
-int l1l2_shutter_fit(const L1L2ShutterModel *shape, const L1L2Pair *pairs, int count, double threshold,
-                             bool *inlier, const L1L2Mat *F, L1L2ShutterMeasurement *step)
+/* All rounds. scale: out, of the last one. */
+static bool fit_all(const Tracks *tracks, double threshold, const bool *inlier, L1L2ShutterResidual *fit, double *scale)
 {
-    const Points points = {shape, pairs, F, count};
-    memset(step, 0, sizeof *step);
-    L1L2ShutterResidual fit = {{0.0}};
-    bool ok = l1l2_fit_coverage(shape->half_w, shape->half_h, pairs, inlier, count) >= min_coverage &&
-              refit(&points, 0.0, inlier, &fit, &step->r);
-    for (int k = 0; k < ROUNDS && ok; k++) {
-        fit = step->r;
-        ok = refit(&points, scale[k] * threshold, NULL, &fit, &step->r);
+    const L1L2ShutterParameters *parameters = tracks->parameters;
+    const int rounds = parameters->wide_rounds + parameters->narrow_rounds;
+    L1L2ShutterResidual before = {{0.0}};
+    *scale = threshold;
+    bool ok = refit(tracks, none_left_out, inlier, 0.0, &before, fit);
+    for (int round = 0; round < rounds && ok; round++) {
+        before = *fit;
+        *scale = (round < parameters->wide_rounds ? parameters->wide_scale : parameters->narrow_scale) * threshold;
+        ok = refit(tracks, none_left_out, NULL, *scale, &before, fit);
     }
-    if (!ok) {
-        memset(step, 0, sizeof *step);
-        return 0;
-    }
-    for (int division = 0; division < L1L2_SPLITS; division++)
-        validate(&points, division, scale[ROUNDS - 1] * threshold, step);
+    return ok;
+}
+
+static int mark_inliers(const Tracks *tracks, const L1L2ShutterResidual *fit, double threshold, bool *inlier)
+{
     int inliers = 0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < tracks->count; i++) {
         L1L2Point d;
-        const L1L2Point left = left_by(&points, &step->r, i, &d);
+        const L1L2Point left = remainder_of(tracks, fit, i, &d);
         inlier[i] = hypot(left.x, left.y) <= threshold;
         inliers += inlier[i];
     }
     return inliers;
+}
+
+int l1l2_shutter_fit(const L1L2ShutterModel *model, const L1L2Pair *pairs, int count, double threshold, bool *inlier,
+                     const L1L2Mat *F, L1L2ShutterMeasurement *measurement)
+{
+    const L1L2ShutterParameters *parameters = l1l2_shutter_parameters_or_default(model->parameters);
+    const Tracks tracks = {model, parameters, pairs, F, count};
+    double scale;
+    memset(measurement, 0, sizeof *measurement);
+    if (l1l2_fit_coverage(model->half_w, model->half_h, pairs, inlier, count) < parameters->min_coverage ||
+        !fit_all(&tracks, threshold, inlier, &measurement->r, &scale)) {
+        memset(measurement, 0, sizeof *measurement);
+        return 0;
+    }
+    for (int split = 0; split < L1L2_SPLITS; split++)
+        validate(&tracks, split, scale, measurement);
+    return mark_inliers(&tracks, &measurement->r, threshold, inlier);
 }

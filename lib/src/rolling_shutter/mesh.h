@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Algorithm 1, step 4, in the picture: B_t and a frame's residual as one mesh of source positions, none of which is
- * outside the source frame.
+ * Algorithm 1, step 4, in the picture: B_t and a frame's rolling-shutter residual as one mesh of source positions, none
+ * of which is outside the source frame.
  *
  * Where the residual would reach across a side of the source, the outer eighth of the picture along that side is
- * compressed until it ends on the side. So nothing jumps, for it is as smooth in time as B_t and the residual are, and
- * the rest of the picture keeps all of its correction; fading the residual would give it up all over the frame.
+ * compressed until it ends on the side. G2011 has no such step; fading the residual until it fits would give up the
+ * correction of the whole picture. Convention: the mesh is in pixels from the frame's center, the residual as in
+ * model.h.
  */
 #ifndef L1L2_ROLLING_SHUTTER_MESH_H
 #define L1L2_ROLLING_SHUTTER_MESH_H
@@ -13,9 +14,11 @@
 #include "rolling_shutter/model.h"
 #include "warp/mesh.h"
 
-/* map: output pixel -> source pixel without the residual. width, height: of the source, pixels. Returns the longest
- * way that a node was moved by the residual, pixels; negative where there is no finite mesh: use `map`. */
-double l1l2_shutter_mesh_set(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2ShutterModel *shape,
-                            const L1L2ShutterResidual *residual, int width, int height);
+/* Sets the nodes of a mesh that was initialized for the output frame's size. map: output pixel -> source pixel without
+ * the residual. residual: e_t of the frame. width, height: of the source, pixels. Returns the longest distance by which
+ * the residual moved a node, in pixels, before the compression. Returns a negative number if a node would not be
+ * finite: then the nodes are undefined, and `map` has to be used. */
+double l1l2_shutter_mesh_set(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2ShutterModel *model,
+                             const L1L2ShutterResidual *residual, int width, int height);
 
 #endif

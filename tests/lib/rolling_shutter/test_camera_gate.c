@@ -8,7 +8,7 @@
 enum { FRAMES = 300 };
 static const double pi = 3.14159265358979;
 static const double px = 1.0 / 734.0; /* of 640x360 */
-static const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.436, 0.245};
+static const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.436, 0.245, NULL};
 
 /* A hand: px from where it is held, along one axis, at a time in frames. */
 static double hand(int axis, double time)
@@ -48,14 +48,14 @@ START_TEST(rows_follow_the_camera_whichever_way_they_are_read)
 {
     const double readouts[] = {-0.9, 0.3, 1.0};
     for (int i = 0; i < 3; i++) {
-        L1L2ShutterGate cause = {.known = 0};
+        L1L2ShutterGate gate = {.known = 0};
         for (int t = 0; t < FRAMES; t++) {
             L1L2ShutterMeasurement step = {.r = rows_at(t, readouts[i])};
             const L1L2Mat F = motion_at(t, 1.0);
-            l1l2_shutter_gate_push(&cause, &shape, &F, &step);
+            l1l2_shutter_gate_push(&gate, &shape, &F, &step);
         }
-        ck_assert_double_gt(l1l2_shutter_gate_share(&cause), 0.9);
-        ck_assert_double_le(l1l2_shutter_gate_share(&cause), 1.0);
+        ck_assert_double_gt(l1l2_shutter_gate_share(&gate), 0.9);
+        ck_assert_double_le(l1l2_shutter_gate_share(&gate), 1.0);
     }
 }
 END_TEST
@@ -64,14 +64,14 @@ START_TEST(what_moves_by_itself_does_not_follow_the_camera)
 {
     const double strengths[] = {1.0, 0.1, 0.0}; /* a hand, a stand, nothing moves */
     for (int i = 0; i < 3; i++) {
-        L1L2ShutterGate cause = {.known = 0};
+        L1L2ShutterGate gate = {.known = 0};
         double explained = 0.0, all = 0.0;
         for (int t = 0; t < FRAMES; t++) {
             L1L2ShutterMeasurement step = {.r = mover_at(t)};
             const L1L2Mat F = motion_at(t, strengths[i]);
-            l1l2_shutter_gate_push(&cause, &shape, &F, &step);
+            l1l2_shutter_gate_push(&gate, &shape, &F, &step);
             explained += step.explained[L1L2_VALIDATION_CAMERA], all += step.all[L1L2_VALIDATION_CAMERA];
-            ck_assert_double_lt(l1l2_shutter_gate_share(&cause),
+            ck_assert_double_lt(l1l2_shutter_gate_share(&gate),
                                 0.3); /* by chance for a while, but never all believed */
         }
         ck_assert_double_lt(explained, 0.02 * all);
@@ -81,13 +81,13 @@ END_TEST
 
 START_TEST(a_shutter_is_told_of_a_frame_two_frames_later)
 {
-    L1L2ShutterGate cause = {.known = 0};
+    L1L2ShutterGate gate = {.known = 0};
     for (int t = 0; t < FRAMES; t++) {
         L1L2ShutterMeasurement step = {.r = rows_at(t, 0.7)};
         if (t < L1L2_SHUTTER_GATE_DELAY)
             memset(&step.r, 0, sizeof step.r);
         const L1L2Mat F = motion_at(t, 1.0);
-        l1l2_shutter_gate_push(&cause, &shape, &F, &step);
+        l1l2_shutter_gate_push(&gate, &shape, &F, &step);
         ck_assert((step.all[L1L2_VALIDATION_CAMERA] > 0.0) == (t >= 2 * L1L2_SHUTTER_GATE_DELAY));
     }
 }
@@ -95,24 +95,24 @@ END_TEST
 
 START_TEST(what_is_learned_outlives_a_cut_but_nothing_is_told_across_it)
 {
-    L1L2ShutterGate cause = {.known = 0};
+    L1L2ShutterGate gate = {.known = 0};
     for (int t = 0; t < FRAMES; t++) {
         L1L2ShutterMeasurement step = {.r = rows_at(t, 0.7)};
         const L1L2Mat F = motion_at(t, 1.0);
         if (t == 200)
-            l1l2_shutter_gate_break(&cause);
-        l1l2_shutter_gate_push(&cause, &shape, &F, &step);
+            l1l2_shutter_gate_break(&gate);
+        l1l2_shutter_gate_push(&gate, &shape, &F, &step);
         if (t >= 200 && t < 204)
-            ck_assert_double_eq(l1l2_shutter_gate_share(&cause), 0.0);
+            ck_assert_double_eq(l1l2_shutter_gate_share(&gate), 0.0);
         if (t >= 204)
-            ck_assert_double_gt(l1l2_shutter_gate_share(&cause), 0.8);
+            ck_assert_double_gt(l1l2_shutter_gate_share(&gate), 0.8);
     }
 }
 END_TEST
 
 START_TEST(a_lean_is_a_stretch_and_no_similarity_is)
 {
-    const L1L2ShutterModel homography = {L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, 0.436, 0.245};
+    const L1L2ShutterModel homography = {L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, 0.436, 0.245, NULL};
     const L1L2ShutterResidual lean = {{0.0, 0.03}}, longer = {{0.02, 0.0, 0.0, 0.0, -0.01}};
     const L1L2ShutterResidual similar = {{0.02, -0.01, 0.1, 0.01, 0.02, 0.2}};
     L1L2ShutterResidual rows = {{0.0}};

@@ -13,7 +13,7 @@ static const double diagonal_px = 734.30239;
 
 static L1L2ShutterFilter *wobble_new(L1L2StabRollingShutter model, int window)
 {
-    const L1L2ShutterFilterConfig cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, window};
+    const L1L2ShutterFilterConfig cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, window, NULL};
     L1L2ShutterFilter *w;
     ck_assert_int_eq(l1l2_shutter_filter_create(&w, &cfg), L1L2STAB_OK);
     return w;
@@ -145,7 +145,7 @@ END_TEST
 START_TEST(a_fast_pan_leans_by_3_percent_at_most)
 {
     const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.5 * WIDTH / diagonal_px,
-                                     0.5 * HEIGHT / diagonal_px};
+                                     0.5 * HEIGHT / diagonal_px, NULL};
     const Swing swing = {4.0 / diagonal_px, 0.06, 0.7};
     L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
     double most = 0.0;
@@ -207,7 +207,7 @@ END_TEST
 
 START_TEST(none_is_no_object_and_that_is_fine)
 {
-    const L1L2ShutterFilterConfig cfg = {L1L2STAB_ROLLING_SHUTTER_NONE, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW};
+    const L1L2ShutterFilterConfig cfg = {L1L2STAB_ROLLING_SHUTTER_NONE, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW, NULL};
     const L1L2Mat map = l1l2_mat_identity();
     L1L2ShutterFilter *w;
     double reach = 1.0;
@@ -258,7 +258,7 @@ START_TEST(no_sample_is_outside_the_source_for_10000_paths_and_residuals)
     ck_assert(l1l2_warp_mesh_init(&mesh, WIDTH, HEIGHT));
     for (int i = 0; i < 10000; i++) {
         const L1L2ShutterModel shape = {i % 2 ? L1L2STAB_ROLLING_SHUTTER_MIXTURE : L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY,
-                                         0.5 * WIDTH / diagonal_px, 0.5 * HEIGHT / diagonal_px};
+                                         0.5 * WIDTH / diagonal_px, 0.5 * HEIGHT / diagonal_px, NULL};
         const double size = i % 5 == 0 ? 1.0 : i % 5 == 1 ? 0.05 : 0.005;
         const L1L2Mat map = random_map(&rng, uniform(&rng, 0.5, 0.99));
         const L1L2ShutterResidual r = random_residual(&rng, size);
@@ -275,7 +275,7 @@ END_TEST
 START_TEST(nothing_jumps_where_the_residual_reaches_the_border)
 {
     const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.5 * WIDTH / diagonal_px,
-                                     0.5 * HEIGHT / diagonal_px};
+                                     0.5 * HEIGHT / diagonal_px, NULL};
     const L1L2Mat map = l1l2_mat_mul(l1l2_mat_translation(31.0, 0.0), l1l2_mat_diagonal(0.9, 0.9));
     L1L2WarpMesh mesh[2];
     double farthest = 0.0, inside = 0.0;
@@ -302,7 +302,7 @@ END_TEST
 
 START_TEST(what_is_not_finite_is_no_mesh)
 {
-    const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, 0.4, 0.2};
+    const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, 0.4, 0.2, NULL};
     const L1L2Mat map = l1l2_mat_identity();
     L1L2ShutterResidual r = {{0.0}};
     L1L2WarpMesh mesh;

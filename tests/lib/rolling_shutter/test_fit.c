@@ -31,7 +31,7 @@ static double noise(L1L2Rng *rng, double sigma)
 /* Points all over the frame, which move by F and then by `truth`, seen with 0.1 px of noise. */
 static Scene scene_of(L1L2StabRollingShutter model, const L1L2Mat *F, const L1L2ShutterResidual *truth)
 {
-    Scene s = {.shape = {model, half_w, half_h}, .rng = l1l2_rng_seeded(7)};
+    Scene s = {.shape = {model, half_w, half_h, NULL}, .rng = l1l2_rng_seeded(7)};
     for (int i = 0; i < MAX; i++) {
         const L1L2Point p = {uniform(&s.rng, -half_w, half_w), uniform(&s.rng, -half_h, half_h)};
         const L1L2Point moved = l1l2_mat_apply(F, p), r = l1l2_shutter_residual_at(&s.shape, truth, p);
@@ -170,7 +170,7 @@ START_TEST(what_is_split_off_leaves_no_similarity)
 {
     const L1L2ShutterResidual given[] = {{{0.0}}, some_homography(), some_rows()};
     for (int model = L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY; model <= L1L2STAB_ROLLING_SHUTTER_MIXTURE; model++) {
-        const L1L2ShutterModel shape = {(L1L2StabRollingShutter)model, half_w, half_h};
+        const L1L2ShutterModel shape = {(L1L2StabRollingShutter)model, half_w, half_h, NULL};
         L1L2ShutterResidual rest = given[model];
         const L1L2Mat taken = l1l2_shutter_residual_extract_similarity(&shape, &rest);
         const L1L2Point p = {0.2, -0.1}, whole = l1l2_shutter_residual_at(&shape, &given[model], p);

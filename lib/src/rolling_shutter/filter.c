@@ -161,6 +161,9 @@ static L1L2ShutterResidual predict(const L1L2ShutterFilter *filter, int64_t t, d
     for (int i = 0; i < 3; i++) {
         velocity[i] = 0.5 * (into->F.m[entry[i]] + out->F.m[entry[i]]);
         acceleration[i] = out->F.m[entry[i]] - into->F.m[entry[i]];
+        /* A caller may give any motion. From one that moves the frame by its diagonal or more, nothing is predicted. */
+        if (!(fabs(velocity[i]) + fabs(acceleration[i]) < 2.0))
+            return k;
     }
     for (int b = 0; b < L1L2_SHUTTER_BANDS; b++) {
         const double tau = readout * l1l2_shutter_band_row(b);
@@ -268,10 +271,6 @@ const L1L2ShutterResidual *l1l2_shutter_filter_pull(L1L2ShutterFilter *filter)
     filter->last = estimate(filter, filter->pulled);
     filter->last_predicted = predict(filter, filter->pulled, l1l2_shutter_filter_readout(filter));
     filter->emitted = limited(filter, filter->last);
-    /* Motions that the caller gave may be so large that sums of them overflow. The next frames start from here. */
-    if (!l1l2_shutter_residual_is_finite(&filter->emitted) ||
-        !l1l2_shutter_residual_is_finite(&filter->last_predicted))
-        filter->last = filter->last_predicted = filter->emitted = (L1L2ShutterResidual){{0.0}};
     for (int k = 0; k < L1L2_VALIDATIONS; k++) {
         const double fade = filter->parameters->confidence_fade;
         filter->explained[k] = fade * (filter->explained[k] + now->measurement.explained[k]);

@@ -11,15 +11,15 @@ enum { WIDTH = 640, HEIGHT = 360, WINDOW = 60 };
 static const double pi = 3.14159265358979;
 static const double diagonal_px = 734.30239;
 
-static L1L2ShutterFilter *wobble_new(L1L2StabRollingShutter model, int window)
+static L1L2ShutterFilter *filter_new(L1L2StabRollingShutter model, int window)
 {
     const L1L2ShutterFilterConfig cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, window, NULL};
-    L1L2ShutterFilter *w;
-    ck_assert_int_eq(l1l2_shutter_filter_create(&w, &cfg), L1L2STAB_OK);
-    return w;
+    L1L2ShutterFilter *filter;
+    ck_assert_int_eq(l1l2_shutter_filter_create(&filter, &cfg), L1L2STAB_OK);
+    return filter;
 }
 
-/* A camera that swings sideways: where it is, diagonals, at a time in frames. */
+/* A camera that swings sideways. */
 typedef struct Swing {
     double amplitude, frequency; /* diagonals; turns a frame */
     double readout;              /* frames */
@@ -30,10 +30,10 @@ static double camera_at(const Swing *s, double time)
     return s->amplitude * sin(2.0 * pi * s->frequency * time);
 }
 
-/* What the bands do from frame t to t-1, exactly; F is their mean. */
-static L1L2ShutterMeasurement step_of(const Swing *s, int t, L1L2Mat *F)
+/* The exact motion of the bands from frame t to t-1; F is their mean. */
+static L1L2ShutterMeasurement measurement_of(const Swing *s, int t, L1L2Mat *F)
 {
-    L1L2ShutterMeasurement step = {.explained = {1.0, 1.0, 1.0, 1.0}, .all = {1.0, 1.0, 1.0, 1.0}};
+    L1L2ShutterMeasurement measurement = {.explained = {1.0, 1.0, 1.0, 1.0}, .all = {1.0, 1.0, 1.0, 1.0}};
     double mean = 0.0, x[L1L2_SHUTTER_BANDS];
     for (int k = 0; k < L1L2_SHUTTER_BANDS; k++) {
         const double at = s->readout * l1l2_shutter_band_row(k);
@@ -41,25 +41,25 @@ static L1L2ShutterMeasurement step_of(const Swing *s, int t, L1L2Mat *F)
         mean += x[k] / L1L2_SHUTTER_BANDS;
     }
     for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
-        step.r.p[L1L2_SHUTTER_X + k] = x[k] - mean;
+        measurement.r.p[L1L2_SHUTTER_X + k] = x[k] - mean;
     *F = l1l2_mat_translation(mean, 0.0);
-    return step;
+    return measurement;
 }
 
-/* Runs the swing through, and gives the rms of the bands' error, px: against where each band was less the mean. */
+/* Filters a swing. Returns the rms error of the bands' residual, px; *without: the rms of that residual itself. */
 static double run_swing(const Swing *s, int frames, double *readout, double *without)
 {
-    L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
     double sum = 0.0, all = 0.0;
     int count = 0;
     for (int t = 0, out = 0; out < frames; t++) {
         L1L2Mat F;
-        const L1L2ShutterMeasurement step = step_of(s, t, &F);
+        const L1L2ShutterMeasurement measurement = measurement_of(s, t, &F);
         if (t < frames)
-            l1l2_shutter_filter_push(w, &F, t > 0 ? &step : NULL, t == 0);
+            l1l2_shutter_filter_push(filter, &F, t > 0 ? &measurement : NULL, t == 0);
         if (t < WINDOW - 1)
             continue;
-        const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(w);
+        const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(filter);
         double mean = 0.0;
         for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
             mean += camera_at(s, out + s->readout * l1l2_shutter_band_row(k)) / L1L2_SHUTTER_BANDS;
@@ -70,13 +70,13 @@ static double run_swing(const Swing *s, int frames, double *readout, double *wit
         }
         out++;
     }
-    *readout = l1l2_shutter_filter_readout(w);
+    *readout = l1l2_shutter_filter_readout(filter);
     *without = sqrt(all / count) * diagonal_px;
-    l1l2_shutter_filter_free(w);
+    l1l2_shutter_filter_free(filter);
     return sqrt(sum / count) * diagonal_px;
 }
 
-START_TEST(the_rows_own_skew_is_found_and_not_only_its_changes)
+START_TEST(the_skew_of_each_frame_is_found_and_not_only_its_changes)
 {
     const double frequencies[] = {0.02, 0.05, 0.1, 0.17, 0.33, 0.66};
     for (int i = 0; i < 6; i++) {
@@ -88,7 +88,7 @@ START_TEST(the_rows_own_skew_is_found_and_not_only_its_changes)
 }
 END_TEST
 
-START_TEST(the_readout_is_found_whichever_way_it_runs)
+START_TEST(the_readout_is_found_in_either_direction)
 {
     const double readouts[] = {-0.9, -0.4, 0.0, 0.3, 0.6, 0.95};
     for (int i = 0; i < 6; i++) {
@@ -100,126 +100,128 @@ START_TEST(the_readout_is_found_whichever_way_it_runs)
 }
 END_TEST
 
-START_TEST(frames_without_a_measured_residual_and_cuts_end_nothing)
+START_TEST(frames_that_were_not_measured_and_cuts_leave_the_residual_bounded)
 {
-    L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
     const Swing swing = {4.0 / diagonal_px, 0.1, 0.7};
     for (int t = 0, out = 0; out < 200; t++) {
         L1L2Mat F;
-        const L1L2ShutterMeasurement step = step_of(&swing, t, &F);
+        const L1L2ShutterMeasurement measurement = measurement_of(&swing, t, &F);
         const bool cut = t == 0 || t == 100;
         if (t < 200)
-            l1l2_shutter_filter_push(w, &F, cut || t % 17 == 0 ? NULL : &step, cut);
+            l1l2_shutter_filter_push(filter, &F, cut || t % 17 == 0 ? NULL : &measurement, cut);
         if (t < WINDOW - 1)
             continue;
-        const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(w);
+        const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(filter);
         for (int k = 0; k < L1L2_SHUTTER_SIZE; k++)
             ck_assert_double_lt(fabs(e->p[k]), 10.0 / diagonal_px);
         out++;
     }
-    l1l2_shutter_filter_free(w);
+    l1l2_shutter_filter_free(filter);
 }
 END_TEST
 
-/* All witnesses but one. */
-START_TEST(what_not_all_columns_tell_alike_or_the_camera_did_not_cause_changes_nothing)
+/* All validation tests but one pass. */
+START_TEST(a_residual_that_fails_one_validation_test_is_not_used)
 {
     const int silent[] = {L1L2_SPLIT_HALVES, L1L2_SPLIT_COLUMNS, L1L2_VALIDATION_CAMERA};
     for (int i = 0; i < 3; i++) {
-        L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+        L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
         const L1L2Mat F = l1l2_mat_translation(0.01, 0.0);
-        L1L2ShutterMeasurement step = {{{0.001, 0.002, 0.003, 0.001}}, {0.9, 0.9, 0.9, 0.9}, {1.0, 1.0, 1.0, 1.0}};
-        step.explained[silent[i]] = 0.0;
+        L1L2ShutterMeasurement measurement = {
+            {{0.001, 0.002, 0.003, 0.001}}, {0.9, 0.9, 0.9, 0.9}, {1.0, 1.0, 1.0, 1.0},
+        };
+        measurement.explained[silent[i]] = 0.0;
         for (int t = 0; t < WINDOW; t++)
-            l1l2_shutter_filter_push(w, &F, &step, t == 0);
+            l1l2_shutter_filter_push(filter, &F, &measurement, t == 0);
         for (int t = 0; t < WINDOW; t++) {
-            const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(w);
+            const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(filter);
             for (int k = 0; k < L1L2_SHUTTER_SIZE; k++)
                 ck_assert_double_eq(e->p[k], 0.0);
         }
-        l1l2_shutter_filter_free(w);
+        l1l2_shutter_filter_free(filter);
     }
 }
 END_TEST
 
-START_TEST(a_fast_pan_leans_by_3_percent_at_most)
+START_TEST(the_shear_of_a_fast_pan_is_limited_to_3_percent)
 {
-    const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.5 * WIDTH / diagonal_px,
+    const L1L2ShutterModel model = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.5 * WIDTH / diagonal_px,
                                      0.5 * HEIGHT / diagonal_px, NULL};
     const Swing swing = {4.0 / diagonal_px, 0.06, 0.7};
-    L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
     double most = 0.0;
     for (int t = 0, out = 0; out < 240; t++) {
         L1L2Mat F;
-        const L1L2ShutterMeasurement step = step_of(&swing, t, &F);
-        F.m[2] += 40.0 / diagonal_px; /* a lean of 28 px, 8 % */
+        const L1L2ShutterMeasurement measurement = measurement_of(&swing, t, &F);
+        F.m[2] += 40.0 / diagonal_px; /* a shear of 28 px, 8 % */
         if (t < 240)
-            l1l2_shutter_filter_push(w, &F, t > 0 ? &step : NULL, t == 0);
+            l1l2_shutter_filter_push(filter, &F, t > 0 ? &measurement : NULL, t == 0);
         if (t < WINDOW - 1)
             continue;
-        most = fmax(most, l1l2_shutter_residual_stretch(&shape, l1l2_shutter_filter_pull(w)));
+        most = fmax(most, l1l2_shutter_residual_stretch(&model, l1l2_shutter_filter_pull(filter)));
         out++;
     }
     ck_assert_near(most, 0.03, 1e-9);
-    l1l2_shutter_filter_free(w);
+    l1l2_shutter_filter_free(filter);
 }
 END_TEST
 
-START_TEST(what_explains_nothing_changes_nothing)
+START_TEST(a_residual_that_explains_nothing_is_not_used)
 {
-    L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, WINDOW);
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, WINDOW);
     const L1L2Mat F = l1l2_mat_translation(0.01, 0.0), map = l1l2_mat_similarity(0.9, 0.01, 3.0, 2.0);
     double reach;
     for (int t = 0; t < WINDOW; t++) {
-        const L1L2ShutterMeasurement step = {
+        const L1L2ShutterMeasurement measurement = {
             {{0.001, 0.002, 0.003, 0.001}}, {-0.1, -0.1, -0.1, -0.1}, {1.0, 1.0, 1.0, 1.0},
         };
-        l1l2_shutter_filter_push(w, &F, &step, t == 0);
+        l1l2_shutter_filter_push(filter, &F, &measurement, t == 0);
     }
     for (int t = 0; t < WINDOW; t++) {
-        l1l2_shutter_filter_pull(w);
-        ck_assert_ptr_null(l1l2_shutter_filter_mesh(w, &map, 1.0, &reach));
+        l1l2_shutter_filter_pull(filter);
+        ck_assert_ptr_null(l1l2_shutter_filter_mesh(filter, &map, 1.0, &reach));
         ck_assert_double_eq(reach, 0.0);
     }
-    l1l2_shutter_filter_free(w);
+    l1l2_shutter_filter_free(filter);
 }
 END_TEST
 
-START_TEST(reset_is_as_new)
+START_TEST(a_filter_that_was_reset_is_as_good_as_new)
 {
     const Swing swing = {4.0 / diagonal_px, 0.1, 0.7};
-    L1L2ShutterFilter *w = wobble_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
     L1L2ShutterResidual first[2];
     for (int run = 0; run < 2; run++) {
         for (int t = 0; t < WINDOW; t++) {
             L1L2Mat F;
-            const L1L2ShutterMeasurement step = step_of(&swing, t, &F);
-            l1l2_shutter_filter_push(w, &F, &step, t == 0);
+            const L1L2ShutterMeasurement measurement = measurement_of(&swing, t, &F);
+            l1l2_shutter_filter_push(filter, &F, &measurement, t == 0);
         }
         for (int t = 0; t < 30; t++)
-            first[run] = *l1l2_shutter_filter_pull(w);
-        l1l2_shutter_filter_reset(w);
+            first[run] = *l1l2_shutter_filter_pull(filter);
+        l1l2_shutter_filter_reset(filter);
     }
     ck_assert_mem_eq(&first[0], &first[1], sizeof first[0]);
-    l1l2_shutter_filter_free(w);
+    l1l2_shutter_filter_free(filter);
 }
 END_TEST
 
-START_TEST(none_is_no_object_and_that_is_fine)
+START_TEST(with_model_none_there_is_no_filter_and_all_functions_take_null)
 {
     const L1L2ShutterFilterConfig cfg = {L1L2STAB_ROLLING_SHUTTER_NONE, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW, NULL};
     const L1L2Mat map = l1l2_mat_identity();
-    L1L2ShutterFilter *w;
+    L1L2ShutterFilter *filter;
     double reach = 1.0;
-    ck_assert_int_eq(l1l2_shutter_filter_create(&w, &cfg), L1L2STAB_OK);
-    ck_assert_ptr_null(w);
-    l1l2_shutter_filter_reset(w);
-    l1l2_shutter_filter_push(w, &map, NULL, true);
-    ck_assert_ptr_null(l1l2_shutter_filter_pull(w));
-    ck_assert_ptr_null(l1l2_shutter_filter_mesh(w, &map, 1.0, &reach));
+    ck_assert_int_eq(l1l2_shutter_filter_create(&filter, &cfg), L1L2STAB_OK);
+    ck_assert_ptr_null(filter);
+    l1l2_shutter_filter_reset(filter);
+    l1l2_shutter_filter_push(filter, &map, NULL, true);
+    ck_assert_ptr_null(l1l2_shutter_filter_pull(filter));
+    ck_assert_ptr_null(l1l2_shutter_filter_mesh(filter, &map, 1.0, &reach));
     ck_assert_double_eq(reach, 0.0);
-    ck_assert_double_eq(l1l2_shutter_filter_readout(w), 0.0);
-    l1l2_shutter_filter_free(w);
+    ck_assert_double_eq(l1l2_shutter_filter_readout(filter), 0.0);
+    l1l2_shutter_filter_free(filter);
 }
 END_TEST
 
@@ -236,7 +238,7 @@ static L1L2ShutterResidual random_residual(L1L2Rng *rng, double size)
     return r;
 }
 
-/* A B_t that a path may have: anything, pulled in until the crop window is inside. */
+/* A random B_t whose crop window is inside the source, as a path's is. */
 static L1L2Mat random_map(L1L2Rng *rng, double ratio)
 {
     const L1L2PathCropWindow crop = l1l2_path_crop_window(WIDTH, HEIGHT, ratio, 4);
@@ -250,19 +252,19 @@ static L1L2Mat random_map(L1L2Rng *rng, double ratio)
     return l1l2_mat_mul(l1l2_mat_rescale(B, diagonal_px), l1l2_mat_diagonal(ratio, ratio));
 }
 
-/* Cells are bilinear, so their nodes tell about every sample. */
+/* Cells are bilinear, so it is enough to look at their nodes. */
 START_TEST(no_sample_is_outside_the_source_for_10000_paths_and_residuals)
 {
     L1L2Rng rng = l1l2_rng_seeded(3);
     L1L2WarpMesh mesh;
     ck_assert(l1l2_warp_mesh_init(&mesh, WIDTH, HEIGHT));
     for (int i = 0; i < 10000; i++) {
-        const L1L2ShutterModel shape = {i % 2 ? L1L2STAB_ROLLING_SHUTTER_MIXTURE : L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY,
+        const L1L2ShutterModel model = {i % 2 ? L1L2STAB_ROLLING_SHUTTER_MIXTURE : L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY,
                                          0.5 * WIDTH / diagonal_px, 0.5 * HEIGHT / diagonal_px, NULL};
         const double size = i % 5 == 0 ? 1.0 : i % 5 == 1 ? 0.05 : 0.005;
         const L1L2Mat map = random_map(&rng, uniform(&rng, 0.5, 0.99));
         const L1L2ShutterResidual r = random_residual(&rng, size);
-        ck_assert_double_gt(l1l2_shutter_mesh_set(&mesh, &map, &shape, &r, WIDTH, HEIGHT), 0.0);
+        ck_assert_double_gt(l1l2_shutter_mesh_set(&mesh, &map, &model, &r, WIDTH, HEIGHT), 0.0);
         for (int k = 0; k < mesh.columns * mesh.rows; k++)
             if (!(fabs(mesh.node[k].x) <= 0.5 * WIDTH && fabs(mesh.node[k].y) <= 0.5 * HEIGHT))
                 ck_abort_msg("case %d: node %d is at %.9g, %.9g", i, k, mesh.node[k].x, mesh.node[k].y);
@@ -271,10 +273,10 @@ START_TEST(no_sample_is_outside_the_source_for_10000_paths_and_residuals)
 }
 END_TEST
 
-/* Where the residual reaches over the border more and more, all samples go as slowly as it does. */
-START_TEST(nothing_jumps_where_the_residual_reaches_the_border)
+/* The residual moves over the border in small steps: no sample moves by more than that step. */
+START_TEST(no_sample_jumps_where_the_residual_reaches_the_border)
 {
-    const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.5 * WIDTH / diagonal_px,
+    const L1L2ShutterModel model = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.5 * WIDTH / diagonal_px,
                                      0.5 * HEIGHT / diagonal_px, NULL};
     const L1L2Mat map = l1l2_mat_mul(l1l2_mat_translation(31.0, 0.0), l1l2_mat_diagonal(0.9, 0.9));
     L1L2WarpMesh mesh[2];
@@ -285,7 +287,7 @@ START_TEST(nothing_jumps_where_the_residual_reaches_the_border)
         for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
             r.p[L1L2_SHUTTER_X + k] = -0.05 * i / diagonal_px; /* to the right, 0.05 px a step */
         r.p[L1L2_SHUTTER_PERSPECTIVE] = 1e-9;
-        ck_assert_double_gt(l1l2_shutter_mesh_set(&mesh[i % 2], &map, &shape, &r, WIDTH, HEIGHT), 0.0);
+        ck_assert_double_gt(l1l2_shutter_mesh_set(&mesh[i % 2], &map, &model, &r, WIDTH, HEIGHT), 0.0);
         for (int k = 0; i > 0 && k < mesh[0].columns * mesh[0].rows; k++) {
             const double way = fabs(mesh[1].node[k].x - mesh[0].node[k].x);
             farthest = fmax(farthest, way);
@@ -300,36 +302,80 @@ START_TEST(nothing_jumps_where_the_residual_reaches_the_border)
 }
 END_TEST
 
-START_TEST(what_is_not_finite_is_no_mesh)
+START_TEST(a_residual_that_is_not_finite_gives_no_mesh)
 {
-    const L1L2ShutterModel shape = {L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, 0.4, 0.2, NULL};
+    const L1L2ShutterModel model = {L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, 0.4, 0.2, NULL};
     const L1L2Mat map = l1l2_mat_identity();
     L1L2ShutterResidual r = {{0.0}};
     L1L2WarpMesh mesh;
     ck_assert(l1l2_warp_mesh_init(&mesh, WIDTH, HEIGHT));
     r.p[2] = NAN;
-    ck_assert_double_lt(l1l2_shutter_mesh_set(&mesh, &map, &shape, &r, WIDTH, HEIGHT), 0.0);
+    ck_assert_double_lt(l1l2_shutter_mesh_set(&mesh, &map, &model, &r, WIDTH, HEIGHT), 0.0);
     r.p[2] = 1e308;
-    ck_assert_double_lt(l1l2_shutter_mesh_set(&mesh, &map, &shape, &r, WIDTH, HEIGHT), 0.0);
+    ck_assert_double_lt(l1l2_shutter_mesh_set(&mesh, &map, &model, &r, WIDTH, HEIGHT), 0.0);
     l1l2_warp_mesh_clear(&mesh);
+}
+END_TEST
+
+/* A swing whose readout is known, then one frame that is not finite or has a huge motion, then the swing again. */
+static double error_after(bool huge_motion, bool measurement_is_nan)
+{
+    const Swing swing = {4.0 / diagonal_px, 0.06, 0.7};
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    double largest = 0.0;
+    for (int t = 0, out = 0; out < 300; t++) {
+        L1L2Mat F;
+        L1L2ShutterMeasurement measurement = measurement_of(&swing, t, &F);
+        const bool odd = t == 150;
+        if (odd && huge_motion)
+            F.m[2] = F.m[5] = 1e308;
+        if (odd && measurement_is_nan)
+            measurement.r.p[L1L2_SHUTTER_X + 3] = NAN;
+        if (t < 300)
+            l1l2_shutter_filter_push(filter, &F, t > 0 && !(odd && huge_motion) ? &measurement : NULL, t == 0);
+        if (t < WINDOW - 1)
+            continue;
+        const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(filter);
+        double mean = 0.0;
+        for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
+            mean += camera_at(&swing, out + swing.readout * l1l2_shutter_band_row(k)) / L1L2_SHUTTER_BANDS;
+        for (int k = 0; k < L1L2_SHUTTER_BANDS; k++) {
+            const double truth = camera_at(&swing, out + swing.readout * l1l2_shutter_band_row(k)) - mean;
+            ck_assert(isfinite(e->p[L1L2_SHUTTER_X + k]));
+            if (out >= 250)
+                largest = fmax(largest, fabs(e->p[L1L2_SHUTTER_X + k] - truth));
+        }
+        out++;
+    }
+    l1l2_shutter_filter_free(filter);
+    return largest * diagonal_px;
+}
+
+START_TEST(one_frame_of_huge_or_not_finite_numbers_is_forgotten)
+{
+    const double usual = error_after(false, false);
+    ck_assert_double_lt(usual, 0.5);
+    ck_assert_near(error_after(true, false), usual, 0.05);
+    ck_assert_near(error_after(false, true), usual, 0.05);
 }
 END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("wobble");
-    TCase *tcase = tcase_create("wobble");
-    tcase_add_test(tcase, the_rows_own_skew_is_found_and_not_only_its_changes);
-    tcase_add_test(tcase, the_readout_is_found_whichever_way_it_runs);
-    tcase_add_test(tcase, frames_without_a_measured_residual_and_cuts_end_nothing);
-    tcase_add_test(tcase, what_explains_nothing_changes_nothing);
-    tcase_add_test(tcase, what_not_all_columns_tell_alike_or_the_camera_did_not_cause_changes_nothing);
-    tcase_add_test(tcase, a_fast_pan_leans_by_3_percent_at_most);
-    tcase_add_test(tcase, reset_is_as_new);
-    tcase_add_test(tcase, none_is_no_object_and_that_is_fine);
+    Suite *suite = suite_create("filter");
+    TCase *tcase = tcase_create("filter");
+    tcase_add_test(tcase, the_skew_of_each_frame_is_found_and_not_only_its_changes);
+    tcase_add_test(tcase, the_readout_is_found_in_either_direction);
+    tcase_add_test(tcase, frames_that_were_not_measured_and_cuts_leave_the_residual_bounded);
+    tcase_add_test(tcase, a_residual_that_explains_nothing_is_not_used);
+    tcase_add_test(tcase, a_residual_that_fails_one_validation_test_is_not_used);
+    tcase_add_test(tcase, the_shear_of_a_fast_pan_is_limited_to_3_percent);
+    tcase_add_test(tcase, a_filter_that_was_reset_is_as_good_as_new);
+    tcase_add_test(tcase, with_model_none_there_is_no_filter_and_all_functions_take_null);
     tcase_add_test(tcase, no_sample_is_outside_the_source_for_10000_paths_and_residuals);
-    tcase_add_test(tcase, nothing_jumps_where_the_residual_reaches_the_border);
-    tcase_add_test(tcase, what_is_not_finite_is_no_mesh);
+    tcase_add_test(tcase, no_sample_jumps_where_the_residual_reaches_the_border);
+    tcase_add_test(tcase, a_residual_that_is_not_finite_gives_no_mesh);
+    tcase_add_test(tcase, one_frame_of_huge_or_not_finite_numbers_is_forgotten);
     tcase_set_timeout(tcase, 60);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);

@@ -51,7 +51,7 @@ static void free_pictures(SynthPicture out[FRAMES])
         synth_picture_free(&out[t]);
 }
 
-START_TEST(rows_are_bent_where_it_is_asked_for_and_the_threads_change_no_bit)
+START_TEST(the_residual_is_removed_on_request_and_the_threads_change_no_bit)
 {
     static L1L2StabInfo info[FRAMES];
     SynthPicture one[FRAMES], many[FRAMES];
@@ -72,7 +72,7 @@ START_TEST(rows_are_bent_where_it_is_asked_for_and_the_threads_change_no_bit)
 }
 END_TEST
 
-START_TEST(a_bypassed_frame_is_not_bent)
+START_TEST(a_bypassed_frame_is_not_changed)
 {
     static L1L2StabInfo info[FRAMES];
     SynthPicture out[FRAMES];
@@ -87,9 +87,9 @@ START_TEST(a_bypassed_frame_is_not_bent)
 }
 END_TEST
 
-/* In the middle and at a side, little of what comes known in advance. What bends nothing changes no motion either: the
- * pictures are those without step 4. */
-START_TEST(something_slow_on_40_percent_of_the_picture_does_not_bend_it)
+/* In the middle and at a side, with little look-ahead. A frame without a residual is the same to the bit as without
+ * step 4. */
+START_TEST(a_slow_subject_on_40_percent_of_the_frame_is_not_taken_for_a_rolling_shutter)
 {
     static L1L2StabInfo info[FRAMES];
     SynthPicture plain[FRAMES], out[FRAMES];
@@ -118,9 +118,9 @@ int main(void)
 {
     Suite *suite = suite_create("shutter");
     TCase *tcase = tcase_create("shutter");
-    tcase_add_test(tcase, rows_are_bent_where_it_is_asked_for_and_the_threads_change_no_bit);
-    tcase_add_test(tcase, a_bypassed_frame_is_not_bent);
-    tcase_add_test(tcase, something_slow_on_40_percent_of_the_picture_does_not_bend_it);
+    tcase_add_test(tcase, the_residual_is_removed_on_request_and_the_threads_change_no_bit);
+    tcase_add_test(tcase, a_bypassed_frame_is_not_changed);
+    tcase_add_test(tcase, a_slow_subject_on_40_percent_of_the_frame_is_not_taken_for_a_rolling_shutter);
     tcase_set_timeout(tcase, 60);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);

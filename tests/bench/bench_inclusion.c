@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Whether a sample is ever taken from outside the source picture: every node of the mesh of every frame of a clip, for
- * crop ratios from 0.5 to 0.99, without step 4 and with it. Cells are bilinear, so the nodes tell about every sample.
+ * Inclusion: whether a sample is ever taken from outside the source picture. Looks at every node of the mesh of every
+ * frame of a clip, for crop ratios from 0.5 to 0.99, without step 4 and with it. Cells are bilinear: if all nodes are
+ * inside, all samples are.
  *
  * usage: gst-launch-1.0 -q filesrc location=CLIP ! decodebin ! videoconvert ! video/x-raw,format=GRAY8 ! fdsink |
  *        bench_inclusion WIDTH HEIGHT [FRAMES_PER_SECOND]      (WIDTH a multiple of 4: rows without padding)
@@ -25,8 +26,8 @@ typedef struct Clip {
 } Clip;
 
 typedef struct Count {
-    long frames, bent, nodes, outside;
-    double farthest; /* that a node was moved by step 4, px */
+    long frames, corrected, nodes, outside;
+    double farthest; /* distance by which step 4 moved a node, px */
 } Count;
 
 static void *must(void *memory)
@@ -79,13 +80,13 @@ static void run(const Clip *clip, int model, double ratio, Count *count)
         .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
         .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, WINDOW + L1L2_PATH_PAST},
     };
-    const L1L2ShutterFilterConfig wobble_cfg = {(L1L2StabRollingShutter)model, clip->width, clip->height, clip->width,
+    const L1L2ShutterFilterConfig filter_cfg = {(L1L2StabRollingShutter)model, clip->width, clip->height, clip->width,
                                          clip->height, WINDOW, NULL};
     L1L2Path *path;
-    L1L2ShutterFilter *wobble;
+    L1L2ShutterFilter *filter;
     L1L2WarpMesh plain;
     if (l1l2_path_create(&path, &path_cfg) != L1L2STAB_OK ||
-        l1l2_shutter_filter_create(&wobble, &wobble_cfg) != L1L2STAB_OK ||
+        l1l2_shutter_filter_create(&filter, &filter_cfg) != L1L2STAB_OK ||
         !l1l2_warp_mesh_init(&plain, clip->width, clip->height))
         exit(EXIT_FAILURE);
     for (int t = 0; t <= clip->frames; t++) {
@@ -93,24 +94,24 @@ static void run(const Clip *clip, int model, double ratio, Count *count)
         const bool starts_path = m->model == L1L2STAB_MOTION_SOURCE_NONE;
         if (t < clip->frames) {
             l1l2_path_push(path, &(L1L2PathInput){&m->F, starts_path, 0.5, ratio});
-            l1l2_shutter_filter_push(wobble, &m->F, m->has_residual ? &m->residual : NULL, starts_path);
+            l1l2_shutter_filter_push(filter, &m->F, m->has_residual ? &m->residual : NULL, starts_path);
         } else {
             l1l2_path_finish(path);
         }
         for (const L1L2PathFrame *f; (f = l1l2_path_pull(path)) != NULL; count->frames++) {
             const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f->B, diagonal_px), l1l2_mat_diagonal(ratio, ratio));
             double reach;
-            l1l2_shutter_filter_pull(wobble);
-            const L1L2WarpMesh *bent = l1l2_shutter_filter_mesh(wobble, &map, 1.0, &reach);
+            l1l2_shutter_filter_pull(filter);
+            const L1L2WarpMesh *mesh = l1l2_shutter_filter_mesh(filter, &map, 1.0, &reach);
             l1l2_warp_mesh_set(&plain, &map);
-            check(bent ? bent : &plain, 0.5 * clip->width + (bent ? 0.0 : rounding_px),
-                  0.5 * clip->height + (bent ? 0.0 : rounding_px), count);
-            count->bent += bent != NULL;
+            check(mesh ? mesh : &plain, 0.5 * clip->width + (mesh ? 0.0 : rounding_px),
+                  0.5 * clip->height + (mesh ? 0.0 : rounding_px), count);
+            count->corrected += mesh != NULL;
             count->farthest = fmax(count->farthest, reach);
         }
     }
     l1l2_path_free(path);
-    l1l2_shutter_filter_free(wobble);
+    l1l2_shutter_filter_free(filter);
     l1l2_warp_mesh_clear(&plain);
 }
 
@@ -127,8 +128,8 @@ int main(int argc, char **argv)
         Count count = {0};
         for (int r = 0; r < RATIOS; r++)
             run(&clip, model, ratios[r], &count);
-        printf("%-10s  %6ld frames, %6ld bent by %6.2f px at most: %ld of %ld nodes outside\n", names[model],
-               count.frames, count.bent, count.farthest, count.outside, count.nodes);
+        printf("%-10s  %6ld frames, %6ld with a residual, of %6.2f px at most: %ld of %ld nodes outside\n",
+               names[model], count.frames, count.corrected, count.farthest, count.outside, count.nodes);
         free(clip.motion[model]);
     }
     return EXIT_SUCCESS;

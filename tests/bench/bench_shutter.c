@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a rolling shutter leaves after stabilization, against the truth: synthetic clips whose rows are taken at their
- * own times, handheld, with a vibration of several frequencies. docs/rolling-shutter.md has the table.
+ * What remains of a rolling shutter after stabilization, measured against the truth: synthetic clips whose rows are
+ * taken at their own times, handheld, with a vibration of several frequencies. docs/rolling-shutter.md has the table.
  *
  *   wobble  where the scene lies in two successive outputs, less the smooth path's step: rms over the picture, px
- *   skew    where the scene lies in an output, less the nearest similarity: the rows' own error, rms, px
+ *   skew    where the scene lies in an output, less the nearest similarity: rms over the picture, px
  *
- * Then clips with a global shutter, in which something that moves by itself covers 40 % of the picture: bend is how far
- * that moves a sample from where B_t has it, px.
+ * Then clips with a global shutter in which a subject that moves by itself covers 40 % of the picture:
  *
- * usage: bench_shutter [FRAMES [AMPLITUDE_PX [PICTURE]]]     PICTURE: a PPM of a slow mover at a side, with the
- *                                                    mesh of the mixture
+ *   reach   how far the residual moves a sample, at most, px; it should be 0
+ *
+ * usage: bench_shutter [FRAMES [AMPLITUDE_PX [PICTURE]]]
+ *        PICTURE: where to write a PPM of a slow subject at a side, with the mesh of the mixture
  */
 #include <math.h>
 #include <stdio.h>
@@ -29,10 +30,10 @@ typedef struct Errors {
     double wobble, skew; /* sums of squares */
     int wobbles, skews;
     double readout;
-    double bend;         /* longest, px */
+    double reach;        /* longest, px */
 } Errors;
 
-static const char *picture_path; /* where to draw frame `PICTURE_FRAME` of the run at hand, if anywhere */
+static const char *picture_path; /* where to draw frame PICTURE_FRAME of this run; NULL: nowhere */
 enum { PICTURE_FRAME = 60 };
 
 static L1L2Mat from_px(const double m[9])
@@ -43,7 +44,7 @@ static L1L2Mat from_px(const double m[9])
     return mat;
 }
 
-/* Where the mesh has an output point; beyond the border as in the nearest cell. */
+/* The source position of an output point; beyond the border, the nearest cell is extrapolated. */
 static L1L2Point look_up(const L1L2WarpMesh *mesh, L1L2Point u)
 {
     const double x = (u.x / mesh->width + 0.5) * (mesh->columns - 1), y = (u.y / mesh->height + 0.5) * (mesh->rows - 1);
@@ -72,7 +73,7 @@ static L1L2Point output_point(int i)
     return (L1L2Point){(i % COLUMNS / (COLUMNS - 1.0) - 0.5) * WIDTH, (i / COLUMNS / (ROWS - 1.0) - 0.5) * HEIGHT};
 }
 
-/* What the nearest similarity of the output points does not explain. Their mean is 0. */
+/* Adds what the nearest similarity of the output points does not explain. The mean of the output points is 0. */
 static void add_skew(const L1L2Point at[POINTS], Errors *errors)
 {
     double a = 0.0, b = 0.0, x = 0.0, y = 0.0, norm = 0.0;
@@ -92,7 +93,7 @@ static void add_skew(const L1L2Point at[POINTS], Errors *errors)
     }
 }
 
-/* Frame t, rendered by `now`, and the one before it. */
+/* Adds the errors of frame t, whose mesh is `now`. before: the mesh of the frame before it. */
 static void compare(const Synth *synth, int t, const L1L2PathFrame *f, const L1L2WarpMesh *before,
                     const L1L2WarpMesh *now, Errors *errors)
 {
@@ -119,7 +120,7 @@ static void draw(const SynthPicture *source, const L1L2WarpMesh *mesh)
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         rgb[i][0] = rgb[i][1] = rgb[i][2] = (uint8_t)(source->data[0][i / WIDTH * source->stride[0] + i % WIDTH] / 2);
     for (int i = 0; i < 20000 * 10; i++) {
-        /* Ten lines each way, in fine steps. */
+        /* Ten lines in each direction, in fine steps. */
         const double along = (i % 10000 / 10000.0 - 0.5), across = i / 10000 % 10 / 9.0 - 0.5;
         const L1L2Point u = i < 100000 ? (L1L2Point){along * WIDTH, across * HEIGHT}
                                        : (L1L2Point){across * WIDTH, along * HEIGHT};
@@ -134,19 +135,19 @@ static void draw(const SynthPicture *source, const L1L2WarpMesh *mesh)
     free(rgb);
 }
 
-/* The next frame's map as a mesh. */
-static void take(L1L2ShutterFilter *wobble, const L1L2PathFrame *f, L1L2WarpMesh *mesh, Errors *errors)
+/* Takes the next frame's warp as a mesh. */
+static void take(L1L2ShutterFilter *filter, const L1L2PathFrame *f, L1L2WarpMesh *mesh, Errors *errors)
 {
     const L1L2Mat map = l1l2_mat_mul(l1l2_mat_rescale(f->B, hypot(WIDTH, HEIGHT)),
                                      l1l2_mat_diagonal(crop_ratio, crop_ratio));
     double reach;
-    l1l2_shutter_filter_pull(wobble);
-    const L1L2WarpMesh *bent = l1l2_shutter_filter_mesh(wobble, &map, 1.0, &reach);
-    if (bent)
-        memcpy(mesh->node, bent->node, (size_t)(bent->columns * bent->rows) * sizeof *bent->node);
+    l1l2_shutter_filter_pull(filter);
+    const L1L2WarpMesh *corrected = l1l2_shutter_filter_mesh(filter, &map, 1.0, &reach);
+    if (corrected)
+        memcpy(mesh->node, corrected->node, (size_t)(corrected->columns * corrected->rows) * sizeof *corrected->node);
     else
         l1l2_warp_mesh_set(mesh, &map);
-    errors->bend = fmax(errors->bend, reach);
+    errors->reach = fmax(errors->reach, reach);
 }
 
 static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter model)
@@ -164,13 +165,13 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
         .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
         .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, WINDOW + L1L2_PATH_PAST},
     };
-    const L1L2ShutterFilterConfig wobble_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW, NULL};
+    const L1L2ShutterFilterConfig filter_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW, NULL};
     L1L2Motion *motion = NULL;
     L1L2Path *path = NULL;
-    L1L2ShutterFilter *wobble = NULL;
+    L1L2ShutterFilter *filter = NULL;
     L1L2WarpMesh mesh[2];
     if (l1l2_motion_create(&motion, &motion_cfg) != L1L2STAB_OK || l1l2_path_create(&path, &path_cfg) != L1L2STAB_OK ||
-        l1l2_shutter_filter_create(&wobble, &wobble_cfg) != L1L2STAB_OK ||
+        l1l2_shutter_filter_create(&filter, &filter_cfg) != L1L2STAB_OK ||
         !l1l2_warp_mesh_init(&mesh[0], WIDTH, HEIGHT) || !l1l2_warp_mesh_init(&mesh[1], WIDTH, HEIGHT))
         exit(EXIT_FAILURE);
     Errors errors = {0};
@@ -182,12 +183,12 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
             if (l1l2_motion_push(motion, picture.data[0], picture.stride[0], t == 0, &m) != L1L2STAB_OK)
                 exit(EXIT_FAILURE);
             l1l2_path_push(path, &(L1L2PathInput){&m.F, t == 0, 0.5, crop_ratio});
-            l1l2_shutter_filter_push(wobble, &m.F, m.has_residual ? &m.residual : NULL, t == 0);
+            l1l2_shutter_filter_push(filter, &m.F, m.has_residual ? &m.residual : NULL, t == 0);
         } else {
             l1l2_path_finish(path);
         }
         for (const L1L2PathFrame *f; (f = l1l2_path_pull(path)) != NULL; out++) {
-            take(wobble, f, &mesh[out % 2], &errors);
+            take(filter, f, &mesh[out % 2], &errors);
             compare(synth, out, f, &mesh[(out + 1) % 2], &mesh[out % 2], &errors);
             if (picture_path && out == PICTURE_FRAME) {
                 synth_render_gray(synth, out, picture.data[0], picture.stride[0]);
@@ -195,10 +196,10 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
             }
         }
     }
-    errors.readout = l1l2_shutter_filter_readout(wobble);
+    errors.readout = l1l2_shutter_filter_readout(filter);
     l1l2_motion_free(motion);
     l1l2_path_free(path);
-    l1l2_shutter_filter_free(wobble);
+    l1l2_shutter_filter_free(filter);
     l1l2_warp_mesh_clear(&mesh[0]);
     l1l2_warp_mesh_clear(&mesh[1]);
     synth_picture_free(&picture);
@@ -209,7 +210,7 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
 static void run_movers(int frames, double x, const char *picture)
 {
     static const double speeds[] = {2, 5, 15};
-    printf("\n40 %% of the picture moves by itself, %g widths from the middle; wobble / bend, px\n", x);
+    printf("\n40 %% of the picture moves by itself, %g widths from the center; wobble / reach, px\n", x);
     printf("px/frame    none            homography      mixture\n");
     for (int v = 0; v < 3; v++) {
         SynthConfig scene = synth_defaults();
@@ -220,7 +221,7 @@ static void run_movers(int frames, double x, const char *picture)
         picture_path = v == 0 ? picture : NULL;
         for (int model = 0; model < 3; model++) {
             const Errors e = run(&scene, frames, (L1L2StabRollingShutter)model);
-            printf("  %6.3f / %-6.3f", sqrt(e.wobble / e.wobbles), e.bend);
+            printf("  %6.3f / %-6.3f", sqrt(e.wobble / e.wobbles), e.reach);
         }
         printf("\n");
         fflush(stdout);
@@ -233,7 +234,7 @@ int main(int argc, char **argv)
     const int frames = argc > 1 ? atoi(argv[1]) : 180;
     const double amplitude = argc > 2 ? atof(argv[2]) : 2.0;
     printf("%dx%d, 30 frames/s, %d frames, handheld; wobble / skew, px\n", WIDTH, HEIGHT, frames);
-    printf("readout ms  vibration    none            homography      mixture         readout found, ms\n");
+    printf("readout ms  vibration    none            homography      mixture         readout estimated, ms\n");
     for (int r = 0; r < 4; r++)
         for (int v = 0; v < 5; v++) {
             SynthConfig scene = synth_defaults();

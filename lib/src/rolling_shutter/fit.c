@@ -23,6 +23,14 @@
 
 enum { N = L1L2_SHUTTER_SIZE };
 
+/* Rounds of reweighted least squares with the wide and then the narrow scale. The fit has converged by then: half or
+ * twice as many of either changed nothing in bench_shutter_parameters. */
+enum { WIDE_ROUNDS = 3, NARROW_ROUNDS = 2 };
+
+/* The penalty of a homography's parameters, as in the table. It only keeps the normal equations positive definite where
+ * the tracks lie badly: half or twice of it changed nothing in bench_shutter_parameters. */
+static const double homography_weight = 0.05;
+
 /* The number of tracks for which the parameters state the penalties' weights. */
 static const double reference_count = 200.0;
 
@@ -46,7 +54,7 @@ static void add_penalties(const Tracks *tracks, int count, Normal *normal)
     const double factor = count / reference_count;
     if (tracks->model->kind != L1L2STAB_ROLLING_SHUTTER_MIXTURE) {
         for (int i = 0; i < 8; i++)
-            normal->A[i][i] += parameters->homography_weight * factor;
+            normal->A[i][i] += homography_weight * factor;
         return;
     }
     for (int i = 0; i < N; i++)
@@ -189,13 +197,12 @@ static void validate(const Tracks *tracks, int split, double scale, L1L2ShutterM
 static bool fit_all(const Tracks *tracks, double threshold, const bool *inlier, L1L2ShutterResidual *fit, double *scale)
 {
     const L1L2ShutterParameters *parameters = tracks->parameters;
-    const int rounds = parameters->wide_rounds + parameters->narrow_rounds;
     L1L2ShutterResidual before = {{0.0}};
     *scale = threshold;
     bool ok = refit(tracks, none_left_out, inlier, 0.0, &before, fit);
-    for (int round = 0; round < rounds && ok; round++) {
+    for (int round = 0; round < WIDE_ROUNDS + NARROW_ROUNDS && ok; round++) {
         before = *fit;
-        *scale = (round < parameters->wide_rounds ? parameters->wide_scale : parameters->narrow_scale) * threshold;
+        *scale = (round < WIDE_ROUNDS ? parameters->wide_scale : parameters->narrow_scale) * threshold;
         ok = refit(tracks, none_left_out, NULL, *scale, &before, fit);
     }
     return ok;

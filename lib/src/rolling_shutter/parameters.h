@@ -15,15 +15,13 @@ typedef struct L1L2ShutterRamp {
 } L1L2ShutterRamp;
 
 typedef struct L1L2ShutterParameters {
-    /* fit.c: the fit between two frames. The first four are weights of squared terms, against one track's weight of 1,
+    /* fit.c: the fit between two frames. The first three are weights of squared terms, against one track's weight of 1,
      * in a fit to 200 tracks. They grow with the number of tracks. */
     double bend_weight;        /* of the second difference of neighboring bands' translations: smooths along the rows */
     double translation_weight; /* of each band's translation: pulls it to zero */
     double linear_weight;      /* of a mixture's roll, zoom and perspective */
-    double homography_weight;  /* of each parameter of a homography */
-    int wide_rounds;           /* rounds of reweighted least squares with wide_scale ... */
-    int narrow_rounds;         /* ... and with narrow_scale, after those */
-    double wide_scale, narrow_scale; /* thresholds: a track that is so far off weighs a quarter */
+    double wide_scale;         /* thresholds: in the first rounds, a track that is so far off weighs a quarter ... */
+    double narrow_scale;       /* ... and in the last rounds */
     double min_coverage;       /* part of the frame's cells that must hold an inlier; else nothing is fitted */
 
     /* camera_gate.c: the regression of the residual on the camera's motions. */
@@ -35,7 +33,6 @@ typedef struct L1L2ShutterParameters {
     /* filter.c: the residual of each frame. */
     double leak;              /* weight of |e_t - k_t|^2 against a measured change's weight of 1 */
     double unmeasured_weight; /* of a frame's predicted change where nothing was measured */
-    int lookahead;            /* frames that the recursion reaches ahead, at most */
     double confidence_fade;   /* factor per frame of distance: the validation tests' sums around a frame */
     L1L2ShutterRamp halves, columns, camera; /* parts explained, for each validation test */
     double max_reach;         /* longest correction; a longer one is scaled down */

@@ -13,8 +13,14 @@
  *           local scale of the mesh
  *   rows    frames of 100 that similarity_by_rows.c accepts: all should be of a strong vibration, none of two surfaces
  *
+ * With a clip as input, its tracks are fitted once by motion.c, and the camera gate and the filter run again for each
+ * value of their parameters. Printed is by how much the residual changes, rms over the frames, px, and the default's
+ * rms.
+ *
  * usage: bench_shutter_parameters [--all]    Without --all, prints only results that differ by 3 % or more from the
  *                                            defaults', and names the parameters of which there are none.
+ *        gst-launch-1.0 -q filesrc location=CLIP ! decodebin ! videoconvert ! video/x-raw,format=GRAY8 ! fdsink |
+ *        bench_shutter_parameters WIDTH HEIGHT      (WIDTH a multiple of 4: rows without padding)
  */
 #include <math.h>
 #include <stddef.h>
@@ -24,6 +30,7 @@
 
 #include "common/rng.h"
 #include "fit/least_squares.h"
+#include "motion/motion.h"
 #include "rolling_shutter/camera_gate.h"
 #include "rolling_shutter/filter.h"
 #include "rolling_shutter/fit.h"
@@ -72,20 +79,18 @@ typedef struct Recording {
 typedef struct Swept {
     const char *name;
     size_t offset;
-    bool whole;
 } Swept;
 
-#define REAL(field) {#field, offsetof(L1L2ShutterParameters, field), false}
-#define WHOLE(field) {#field, offsetof(L1L2ShutterParameters, field), true}
+#define REAL(field) {#field, offsetof(L1L2ShutterParameters, field)}
 static const Swept table[] = {
     REAL(bend_weight), REAL(translation_weight), REAL(linear_weight), REAL(wide_scale), REAL(narrow_scale),
-    REAL(min_coverage), REAL(gate_forget), REAL(gate_fade), REAL(gate_ridge), REAL(gate_arm), REAL(leak),
+    REAL(min_coverage), REAL(gate_ridge), REAL(gate_arm), REAL(leak),
     REAL(unmeasured_weight), REAL(confidence_fade), REAL(halves.none), REAL(halves.full), REAL(columns.none),
     REAL(columns.full), REAL(camera.none), REAL(camera.full), REAL(max_reach), REAL(max_stretch),
-    REAL(readout_forget), REAL(readout_min_frames), REAL(readout_agreement.none), REAL(readout_agreement.full),
+ REAL(readout_agreement.none), REAL(readout_agreement.full),
     REAL(max_readout), REAL(readout_too_long.none), REAL(readout_too_long.full), REAL(compress_zone),
-    WHOLE(rows_rounds), WHOLE(rows_min_tracks), REAL(rows_unexplained), REAL(rows_cap), REAL(rows_max_jump),
-    REAL(rows_inlier),
+ REAL(rows_unexplained), REAL(rows_cap), REAL(rows_max_jump),
+   
 };
 enum { SWEPT = sizeof table / sizeof *table };
 
@@ -344,23 +349,120 @@ static const char *result_name(int i, char name[64])
 static void scale(L1L2ShutterParameters *parameters, const Swept *swept, double factor)
 {
     char *field = (char *)parameters + swept->offset;
-    if (swept->whole) {
-        int value;
-        memcpy(&value, field, sizeof value);
-        value = (int)lround(value * factor);
-        memcpy(field, &value, sizeof value);
-    } else {
-        double value;
-        memcpy(&value, field, sizeof value);
-        /* A factor per frame below 1 is swept by its memory 1 / (1 - factor). */
-        value = value >= 0.9 && value < 1.0 ? 1.0 - (1.0 - value) / factor : value * factor;
-        memcpy(field, &value, sizeof value);
+    double value;
+    memcpy(&value, field, sizeof value);
+    /* A factor per frame just below 1 is swept by its memory, 1 / (1 - factor). */
+    value = value >= 0.9 && value < 1.0 ? 1.0 - (1.0 - value) / factor : value * factor;
+    memcpy(field, &value, sizeof value);
+}
+
+/* A real clip: the motion of each frame, with its residual. */
+enum { MAX_FRAMES = 600, SAMPLES = 9 };
+
+typedef struct RealClip {
+    int width, height, frames;
+    L1L2MotionResult motion[MAX_FRAMES];
+} RealClip;
+
+static void analyze(RealClip *clip, FILE *in)
+{
+    const L1L2StabLogger log = {0};
+    const size_t size = (size_t)clip->width * (size_t)clip->height;
+    const L1L2MotionConfig cfg = {
+        .format = l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8), .width = clip->width, .height = clip->height,
+        .analysis_size = 640, .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .seed = 1, .log = &log,
+        .rolling_shutter = L1L2STAB_ROLLING_SHUTTER_MIXTURE,
+    };
+    L1L2Motion *motion;
+    uint8_t *picture = malloc(size);
+    if (!picture || l1l2_motion_create(&motion, &cfg) != L1L2STAB_OK)
+        exit(EXIT_FAILURE);
+    for (; clip->frames < MAX_FRAMES && fread(picture, 1, size, in) == size; clip->frames++)
+        if (l1l2_motion_push(motion, picture, clip->width, clip->frames == 0, &clip->motion[clip->frames]) !=
+            L1L2STAB_OK)
+            exit(EXIT_FAILURE);
+    l1l2_motion_free(motion);
+    free(picture);
+}
+
+/* The displacements of SAMPLES points of each frame, px. */
+static void filter_clip(const RealClip *clip, const L1L2ShutterParameters *parameters,
+                        L1L2Point moved[MAX_FRAMES][SAMPLES])
+{
+    const double diagonal = hypot(clip->width, clip->height);
+    const L1L2StabRollingShutter kind = L1L2STAB_ROLLING_SHUTTER_MIXTURE;
+    const L1L2ShutterModel model = {kind, 0.5 * clip->width / diagonal, 0.5 * clip->height / diagonal, parameters};
+    const L1L2ShutterFilterConfig cfg = {kind,         clip->width, clip->height, clip->width,
+                                         clip->height, WINDOW,      parameters};
+    static L1L2ShutterGate gate;
+    L1L2ShutterFilter *filter;
+    if (l1l2_shutter_filter_create(&filter, &cfg) != L1L2STAB_OK)
+        exit(EXIT_FAILURE);
+    memset(&gate, 0, sizeof gate);
+    for (int t = 0, out = 0; out < clip->frames; t++) {
+        if (t < clip->frames) {
+            const L1L2MotionResult *m = &clip->motion[t];
+            const bool starts = m->model == L1L2STAB_MOTION_SOURCE_NONE;
+            L1L2ShutterMeasurement measurement = m->residual;
+            if (m->has_residual && !starts)
+                l1l2_shutter_gate_push(&gate, &model, &m->F, &measurement);
+            else
+                l1l2_shutter_gate_break(&gate);
+            l1l2_shutter_filter_push(filter, &m->F, m->has_residual ? &measurement : NULL, starts);
+        }
+        if (t < WINDOW - 1 && t < clip->frames - 1)
+            continue;
+        const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(filter);
+        for (int i = 0; i < SAMPLES; i++) {
+            const L1L2Point p = {(i % 3 - 1) * 0.8 * model.half_w, (i / 3 - 1) * 0.8 * model.half_h};
+            const L1L2Point d = l1l2_shutter_residual_at(&model, e, p);
+            moved[out][i] = (L1L2Point){d.x * diagonal, d.y * diagonal};
+        }
+        out++;
     }
+    l1l2_shutter_filter_free(filter);
+}
+
+static double rms(const RealClip *clip, L1L2Point a[MAX_FRAMES][SAMPLES], L1L2Point b[MAX_FRAMES][SAMPLES])
+{
+    double sum = 0.0;
+    for (int t = 0; t < clip->frames; t++)
+        for (int i = 0; i < SAMPLES; i++) {
+            const double x = a[t][i].x - (b ? b[t][i].x : 0.0), y = a[t][i].y - (b ? b[t][i].y : 0.0);
+            sum += x * x + y * y;
+        }
+    return sqrt(sum / (SAMPLES * clip->frames));
+}
+
+static int sweep_clip(int width, int height)
+{
+    static RealClip clip;
+    static L1L2Point usual[MAX_FRAMES][SAMPLES], moved[MAX_FRAMES][SAMPLES];
+    clip.width = width, clip.height = height;
+    analyze(&clip, stdin);
+    if (clip.frames == 0)
+        return EXIT_FAILURE;
+    filter_clip(&clip, &l1l2_shutter_default_parameters, usual);
+    printf("%d frames, residual %.3f px; change when halved, doubled, px\n", clip.frames, rms(&clip, usual, NULL));
+    for (int s = 0; s < SWEPT; s++) {
+        double change[2];
+        for (int doubled = 0; doubled < 2; doubled++) {
+            L1L2ShutterParameters parameters = l1l2_shutter_default_parameters;
+            scale(&parameters, &table[s], doubled ? 2.0 : 0.5);
+            filter_clip(&clip, &parameters, moved);
+            change[doubled] = rms(&clip, moved, usual);
+        }
+        if (change[0] > 0.0 || change[1] > 0.0)
+            printf("%-26s %7.3f %7.3f\n", table[s].name, change[0], change[1]);
+    }
+    return EXIT_SUCCESS;
 }
 
 int main(int argc, char **argv)
 {
     const bool all = argc > 1 && strcmp(argv[1], "--all") == 0;
+    if (argc > 2)
+        return sweep_clip(atoi(argv[1]), atoi(argv[2]));
     double usual[RESULTS], result[RESULTS];
     char name[64];
     const Clip strong = {.name = "rows", .readout_ms = 33.0, .vibration_px = 3.0, .vibration_hz = 20.0, .seed = 1};

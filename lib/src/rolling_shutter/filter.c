@@ -136,7 +136,7 @@ static void learn_readout(L1L2ShutterFilter *filter)
         around.F[j] = &i->F;
         around.r[j] = &i->measurement.r;
     }
-    l1l2_shutter_readout_learn(&filter->readout, filter->parameters, &around);
+    l1l2_shutter_readout_learn(&filter->readout, &around);
 }
 
 double l1l2_shutter_filter_readout(const L1L2ShutterFilter *filter)

@@ -25,8 +25,6 @@ typedef struct L1L2ShutterParameters {
     double min_coverage;       /* part of the frame's cells that must hold an inlier; else nothing is fitted */
 
     /* camera_gate.c: the regression of the residual on the camera's motions. */
-    double gate_forget;    /* factor per frame: what the regression has learned */
-    double gate_fade;      /* factor per frame: the sums of l1l2_shutter_gate_share() */
     double gate_ridge;     /* ridge of the regression, as a motion: less motion than this predicts nearly nothing */
     double gate_arm;       /* what a roll of 1 rad or a zoom by 1 moves the frame's points on average */
 
@@ -39,8 +37,6 @@ typedef struct L1L2ShutterParameters {
     double max_stretch;       /* most that a correction makes the frame longer one way than across, as a part of 1 */
 
     /* readout.c: the time from the first row to the last. */
-    double readout_forget;          /* factor per frame */
-    double readout_min_frames;      /* (faded) frames before it is estimated */
     L1L2ShutterRamp readout_agreement; /* squared correlation of the skew's changes with the accelerations */
     double max_readout;             /* frames: a longer estimate is clipped to this ... */
     L1L2ShutterRamp readout_too_long; /* frames: ... and its confidence falls from full to none between these */
@@ -49,12 +45,9 @@ typedef struct L1L2ShutterParameters {
     double compress_zone; /* part of the source's side that is compressed where the mesh reaches across that side */
 
     /* similarity_by_rows.c: the similarity of a frame whose rows moved differently. */
-    int rows_rounds;        /* of similarity and row shifts in turn */
-    int rows_min_tracks;    /* that a band needs for its shift */
     double rows_unexplained; /* part of the squared residuals that the rows' shifts may leave, at most */
     double rows_cap;        /* thresholds: no residual counts as longer, and one of this length has half weight */
     double rows_max_jump;   /* thresholds: from one band's shift to the next; a subject's edge is a larger jump */
-    double rows_inlier;     /* thresholds: a track that close to its row's shift is an inlier */
 } L1L2ShutterParameters;
 
 extern const L1L2ShutterParameters l1l2_shutter_default_parameters;

@@ -19,6 +19,10 @@
 
 #include <math.h>
 
+/* Factor per frame: a memory of 500 frames, since the camera may change its mode. And the (faded) frames before there
+ * is an estimate. Half and twice of either changed nothing in bench_shutter_parameters. */
+static const double forget = 0.998, min_frames = 20.0;
+
 enum { DELAY = L1L2_SHUTTER_READOUT_DELAY };
 
 double l1l2_shutter_ramp(double value, L1L2ShutterRamp ramp)
@@ -39,12 +43,10 @@ static L1L2Point slope(const L1L2ShutterResidual *r)
     return (L1L2Point){sum.x / norm, sum.y / norm};
 }
 
-void l1l2_shutter_readout_learn(L1L2ShutterReadout *readout, const L1L2ShutterParameters *parameters,
-                                const L1L2ShutterReadoutFrames *around)
+void l1l2_shutter_readout_learn(L1L2ShutterReadout *readout, const L1L2ShutterReadoutFrames *around)
 {
     static const double derivative[5] = {1.0 / 12.0, -8.0 / 12.0, 0.0, 8.0 / 12.0, -1.0 / 12.0};
     static const double lowpass[5] = {0.0625, 0.25, 0.375, 0.25, 0.0625};
-    const double forget = parameters->readout_forget;
     L1L2Point x = {0.0, 0.0}, y = {0.0, 0.0};
     for (int j = -2; j <= 2; j++) {
         const L1L2Point change = slope(around->r[DELAY + j]);
@@ -64,7 +66,7 @@ void l1l2_shutter_readout_learn(L1L2ShutterReadout *readout, const L1L2ShutterPa
 double l1l2_shutter_readout_estimate(const L1L2ShutterReadout *readout, const L1L2ShutterParameters *parameters)
 {
     const double xx = readout->xx, xy = readout->xy, yy = readout->yy, most = parameters->max_readout;
-    if (readout->frames < parameters->readout_min_frames || !(xx > 0.0 && yy > 0.0))
+    if (readout->frames < min_frames || !(xx > 0.0 && yy > 0.0))
         return 0.0;
     const double estimate = xy / xx, agreement = xy * xy / (xx * yy);
     const double confidence = l1l2_shutter_ramp(agreement, parameters->readout_agreement) *

@@ -27,8 +27,7 @@ typedef struct L1L2ShutterReadoutFrames {
 } L1L2ShutterReadoutFrames;
 
 /* Adds the frame in the middle to the regression. */
-void l1l2_shutter_readout_learn(L1L2ShutterReadout *readout, const L1L2ShutterParameters *parameters,
-                                const L1L2ShutterReadoutFrames *around);
+void l1l2_shutter_readout_learn(L1L2ShutterReadout *readout, const L1L2ShutterReadoutFrames *around);
 
 /* The estimate, scaled by its confidence; in [-max_readout, max_readout]; 0 where it is not known. */
 double l1l2_shutter_readout_estimate(const L1L2ShutterReadout *readout, const L1L2ShutterParameters *parameters);

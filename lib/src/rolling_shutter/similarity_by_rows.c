@@ -15,6 +15,13 @@
 
 enum { BANDS = 10, MAX_PAIRS = L1L2_SHUTTER_ROWS_MAX_PAIRS };
 
+/* Rounds of similarity and shifts in turn, and the pairs that a band needs for its median. Half and twice of either
+ * changed nothing in bench_shutter_parameters. */
+enum { ROUNDS = 6, MIN_PAIRS = 4 };
+
+/* Thresholds: a pair that close to its row's shift is an inlier. Half and twice changed nothing there either. */
+static const double inlier_reach = 1.5;
+
 static int ascending(const void *a, const void *b)
 {
     return *(const double *)a < *(const double *)b ? -1 : *(const double *)a > *(const double *)b;
@@ -75,7 +82,7 @@ static bool fit_similarity(const L1L2ShutterRowTracks *tracks, const L1L2Point s
 /* The bands' median shifts. False if a band has too few pairs, or the shift jumps from one band to the next. */
 static bool find_shifts(const L1L2ShutterRowTracks *tracks, const L1L2Mat *fit, L1L2Point shift[BANDS])
 {
-    const L1L2ShutterParameters *parameters = tracks->parameters;
+    const double steepest = tracks->parameters->rows_max_jump * tracks->threshold;
     double x[MAX_PAIRS], y[MAX_PAIRS];
     for (int band = 0; band < BANDS; band++) {
         int n = 0;
@@ -84,11 +91,10 @@ static bool find_shifts(const L1L2ShutterRowTracks *tracks, const L1L2Mat *fit, 
                 const L1L2Point r = residual(fit, &tracks->pairs[i]);
                 x[n] = r.x, y[n++] = r.y;
             }
-        if (n == 0 || n < parameters->rows_min_tracks)
+        if (n < MIN_PAIRS)
             return false;
         shift[band] = (L1L2Point){median(x, n), median(y, n)};
-        if (band > 0 && hypot(shift[band].x - shift[band - 1].x, shift[band].y - shift[band - 1].y) >
-                            parameters->rows_max_jump * tracks->threshold)
+        if (band > 0 && hypot(shift[band].x - shift[band - 1].x, shift[band].y - shift[band - 1].y) > steepest)
             return false;
     }
     L1L2Point mean = {0.0, 0.0};
@@ -104,7 +110,7 @@ static bool find_shifts(const L1L2ShutterRowTracks *tracks, const L1L2Mat *fit, 
 static int accept(const L1L2ShutterRowTracks *tracks, const L1L2Mat *plain, const L1L2Mat *fit,
                   const L1L2Point shift[BANDS], bool near[MAX_PAIRS])
 {
-    const double reach = tracks->parameters->rows_inlier * tracks->threshold;
+    const double reach = inlier_reach * tracks->threshold;
     double before = 0.0, after = 0.0;
     int inliers = 0;
     for (int i = 0; i < tracks->count; i++) {
@@ -129,7 +135,7 @@ int l1l2_shutter_similarity_by_rows(const L1L2ShutterRowTracks *given, bool *inl
         !l1l2_fit(L1L2STAB_MOTION_MODEL_SIMILARITY, tracks.pairs, NULL, tracks.count, &plain))
         return 0;
     all = plain;
-    for (int k = 0; k < tracks.parameters->rows_rounds; k++)
+    for (int k = 0; k < ROUNDS; k++)
         if (!fit_similarity(&tracks, shift, &all) || !find_shifts(&tracks, &all, shift))
             return 0;
     const int inliers = accept(&tracks, &plain, &all, shift, near);

@@ -90,7 +90,7 @@ static const Swept table[] = {
  REAL(readout_agreement.none), REAL(readout_agreement.full),
     REAL(max_readout), REAL(readout_too_long.none), REAL(readout_too_long.full), REAL(compress_zone),
  REAL(rows_unexplained), REAL(rows_cap), REAL(rows_max_jump),
-   
+
 };
 enum { SWEPT = sizeof table / sizeof *table };
 

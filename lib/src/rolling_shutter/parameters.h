@@ -25,29 +25,29 @@ typedef struct L1L2ShutterParameters {
     double min_coverage;       /* part of the frame's cells that must hold an inlier; else nothing is fitted */
 
     /* camera_gate.c: the regression of the residual on the camera's motions. */
-    double gate_ridge;     /* ridge of the regression, as a motion: less motion than this predicts nearly nothing */
-    double gate_arm;       /* what a roll of 1 rad or a zoom by 1 moves the frame's points on average */
+    double gate_ridge; /* ridge of the regression, as a motion: less motion than this predicts nearly nothing */
+    double gate_arm;   /* what a roll of 1 rad or a zoom by 1 moves the frame's points on average */
 
     /* filter.c: the residual of each frame. */
-    double leak;              /* weight of |e_t - k_t|^2 against a measured change's weight of 1 */
-    double unmeasured_weight; /* of a frame's predicted change where nothing was measured */
-    double confidence_fade;   /* factor per frame of distance: the validation tests' sums around a frame */
+    double leak;                             /* weight of |e_t - k_t|^2 against a measured change's weight of 1 */
+    double unmeasured_weight;                /* of a frame's predicted change where nothing was measured */
+    double confidence_fade;                  /* factor per frame of distance: the validation tests' sums around a frame */
     L1L2ShutterRamp halves, columns, camera; /* parts explained, for each validation test */
-    double max_reach;         /* longest correction; a longer one is scaled down */
-    double max_stretch;       /* most that a correction makes the frame longer one way than across, as a part of 1 */
+    double max_reach;                        /* longest correction; a longer one is scaled down */
+    double max_stretch;                      /* most that a correction makes the frame longer one way than across, as a part of 1 */
 
     /* readout.c: the time from the first row to the last. */
     L1L2ShutterRamp readout_agreement; /* squared correlation of the skew's changes with the accelerations */
-    double max_readout;             /* frames: a longer estimate is clipped to this ... */
-    L1L2ShutterRamp readout_too_long; /* frames: ... and its confidence falls from full to none between these */
+    double max_readout;                /* frames: a longer estimate is clipped to this ... */
+    L1L2ShutterRamp readout_too_long;  /* frames: ... and its confidence falls from full to none between these */
 
     /* mesh.c */
     double compress_zone; /* part of the source's side that is compressed where the mesh reaches across that side */
 
     /* similarity_by_rows.c: the similarity of a frame whose rows moved differently. */
     double rows_unexplained; /* part of the squared residuals that the rows' shifts may leave, at most */
-    double rows_cap;        /* thresholds: no residual counts as longer, and one of this length has half weight */
-    double rows_max_jump;   /* thresholds: from one band's shift to the next; a subject's edge is a larger jump */
+    double rows_cap;         /* thresholds: no residual counts as longer, and one of this length has half weight */
+    double rows_max_jump;    /* thresholds: from one band's shift to the next; a subject's edge is a larger jump */
 } L1L2ShutterParameters;
 
 extern const L1L2ShutterParameters l1l2_shutter_default_parameters;

@@ -29,16 +29,16 @@ typedef struct L1L2ShutterParameters {
     double gate_arm;   /* what a roll of 1 rad or a zoom by 1 moves the frame's points on average */
 
     /* filter.c: the residual of each frame. */
-    double leak;                             /* weight of |e_t - k_t|^2 against a measured change's weight of 1 */
-    double unmeasured_weight;                /* of a frame's predicted change where nothing was measured */
-    double confidence_fade;                  /* factor per frame of distance: the validation tests' sums around a frame */
+    double leak; /* weight of |e_t - k_t|^2 against a measured change's weight of 1 */
+    double unmeasured_weight; /* of a frame's predicted change where nothing was measured */
+    double confidence_fade; /* factor per frame of distance: the validation tests' sums around a frame */
     L1L2ShutterRamp halves, columns, camera; /* parts explained, for each validation test */
-    double max_reach;                        /* longest correction; a longer one is scaled down */
-    double max_stretch;                      /* most that a correction makes the frame longer one way than across, as a part of 1 */
+    double max_reach; /* longest correction; a longer one is scaled down */
+    double max_stretch; /* most that a correction makes the frame longer one way than across, as a part of 1 */
 
     /* readout.c: the time from the first row to the last. */
     L1L2ShutterRamp readout_agreement; /* squared correlation of the skew's changes with the accelerations */
-    double max_readout;                /* frames: a longer estimate is clipped to this ... */
+    double max_readout; /* frames: a longer estimate is clipped to this ... */
     L1L2ShutterRamp readout_too_long;  /* frames: ... and its confidence falls from full to none between these */
 
     /* mesh.c */

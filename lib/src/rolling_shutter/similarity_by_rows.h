@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The similarity of a frame whose rows moved so differently that no similarity has many inliers: a rolling shutter that
- * shakes within a frame. It is told from a subject that moves by itself by this: what a similarity leaves of the
+ * shakes within a frame. It is distinguished from a subject that moves by itself: what a similarity leaves of the
  * tracks' motion depends on their row, smoothly, and on nothing else. Convention: any unit, origin at the frame's
  * center.
  */

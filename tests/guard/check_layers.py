@@ -42,7 +42,7 @@ QUOTED = {
 
 # What a header outside this tree is called, and who alone may include it.
 FOREIGN = [
-    (r'opencv', r'lib/src/motion/vision_opencv\.cpp|tests/bench/bench_opencv_.*|tests/clients/opencv_.*'),
+    (r'opencv', r'lib/src/motion/vision_opencv\.cpp|tests/(bench/bench_|clients/|lib/motion/)opencv_.*'),
     (r'(osqp|qdldl|amd)\b', r'lib/src/path/qp_osqp\.c'),
     (r'(gst|glib|gio|gobject|gmodule)\b', r'(plugin/gstreamer|tests/gstreamer|samples)/.*'),
     (r'check\.h', r'tests/.*'),

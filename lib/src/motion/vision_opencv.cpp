@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The other side of vision.h: OpenCV. The only C++ file, and the only one that knows OpenCV.
+ * Implements vision.h with OpenCV. This is the only C++ file of the library and the only one that includes OpenCV.
  *
- * No exception leaves it, and none of OpenCV's globals (threads, random numbers) is touched. All of it runs on
- * the caller's thread.
+ * No exception leaves this file. None of OpenCV's process-wide state (threads, parallel regions, random numbers) is
+ * touched: cv::parallel_for_ marks the whole process as being inside a parallel region, so that parallel loops of the
+ * application would run serially meanwhile. Only OpenCV functions that never call cv::parallel_for_ are used here, which
+ * test_vision checks; what would call it (the pyramid, the selection among corner candidates) is the library's own code.
  */
 #include "motion/vision.h"
 
@@ -15,18 +17,14 @@
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp> /* the pyramid */
 
 #include "common/log.h"
 #include "common/cpu.h"
 #include "image/area_scale.h"
-#include "motion/lucas_kanade.h"
+#include "motion/pyramid.h"
 
 namespace {
 
-/* Halvings above the picture itself: at 640 px, points are followed over 80 px a frame; one less loses half of them at
- * 40 px, and each costs next to nothing. */
-constexpr int kLevels = 4;
 /* The way back starts where the point came from: a point that was followed rightly is there at once, one that was not
  * is drawn to where it matches. A fifth faster than all the way from the top, and in fast pans half as many points more
  * pass. */
@@ -45,9 +43,8 @@ constexpr int kBlack = 40, kFlat = 10;
 /* A long strip keeps this many pixels of its short side, as far as it has them: a window has to find its place. */
 constexpr int kMinSide = 32;
 
-const cv::Size border(L1L2_LK_BORDER_X, L1L2_LK_BORDER_Y);
-
 using Scaler = std::unique_ptr<L1L2AreaScaler, decltype(&l1l2_image_scale_free)>;
+using Pyramid = std::unique_ptr<L1L2Pyramid, decltype(&l1l2_motion_pyramid_free)>;
 
 } // namespace
 
@@ -56,13 +53,10 @@ struct L1L2Vision {
     cv::Size size;
     L1L2LkFunctions lucas_kanade{};
     Scaler to_grey{nullptr, l1l2_image_scale_free}, to_thumbnail{nullptr, l1l2_image_scale_free};
-    cv::Mat grey, previous_grey;
-    std::vector<cv::Mat> pyramid, previous_pyramid;
+    Pyramid pyramid{nullptr, l1l2_motion_pyramid_free}, previous_pyramid{nullptr, l1l2_motion_pyramid_free};
     int pictures = 0;                        /* taken since reset, at most 2 matter */
     cv::Rect active;                         /* the picture without its bars, of the downscaled size */
-    cv::Mat mask;
-    cv::Mat matched;                         /* the previous picture in the current one's brightness */
-    std::vector<cv::Point2f> from;
+    cv::Mat mask;                            /* of corners: 0 where none is wanted */
 };
 
 namespace {
@@ -71,8 +65,7 @@ template <class Body>
 L1L2StabResult guard(const L1L2StabLogger *log, Body &&body) noexcept
 {
     try {
-        /* What is nested in a parallel region OpenCV does on this thread alone: the cores have the warp to do. */
-        cv::parallel_for_(cv::Range(0, 1), [&](const cv::Range &) { body(); });
+        body();
         return L1L2STAB_OK;
     } catch (const std::bad_alloc &) {
         return L1L2STAB_ERR_NOMEM;
@@ -102,6 +95,21 @@ Scaler scaler(const L1L2FormatInfo *format, cv::Size from, cv::Size to)
     return made;
 }
 
+/* A level of a pyramid without its border. The memory is the pyramid's. */
+cv::Mat picture_of(const Pyramid &pyramid, int level)
+{
+    const L1L2LkLevel &l = pyramid->level[level];
+    return {l.height, l.width, CV_8U, pyramid->grey[level], size_t(l.stride)};
+}
+
+Pyramid pyramid(cv::Size size)
+{
+    Pyramid made(l1l2_motion_pyramid_new(size.width, size.height), l1l2_motion_pyramid_free);
+    if (!made)
+        throw std::bad_alloc();
+    return made;
+}
+
 bool inside(const L1L2Vision *v, cv::Point2f p)
 {
     return p.x >= v->active.x && p.y >= v->active.y && p.x <= v->active.x + v->active.width - 1 &&
@@ -113,8 +121,8 @@ bool inside(const L1L2Vision *v, cv::Point2f p)
  * to each other, it was something else. */
 void match_brightness(L1L2Vision *v)
 {
-    const size_t level = std::min<size_t>(4, (v->pyramid.size() - 1) / 2 * 2); /* every second entry is a picture */
-    const cv::Mat &before = v->previous_pyramid[level], &now = v->pyramid[level];
+    const int level = std::min(2, v->pyramid->levels - 1);
+    const cv::Mat before = picture_of(v->previous_pyramid, level), now = picture_of(v->pyramid, level);
     cv::Scalar mean[2], deviation[2];
     cv::meanStdDev(before, mean[0], deviation[0]);
     cv::meanStdDev(now, mean[1], deviation[1]);
@@ -127,38 +135,46 @@ void match_brightness(L1L2Vision *v)
     before.convertTo(matched, CV_8U, gain, offset);
     if (cv::norm(now, matched, cv::NORM_L1) > kNearer * cv::norm(now, before, cv::NORM_L1))
         return;
-    v->previous_grey.convertTo(v->matched, CV_8U, gain, offset);
-    cv::buildOpticalFlowPyramid(v->matched, v->previous_pyramid, border, kLevels);
+    cv::Mat base = picture_of(v->previous_pyramid, 0);
+    base.convertTo(base, CV_8U, gain, offset);
+    l1l2_motion_pyramid_build(v->previous_pyramid.get());
 }
 
-/* How many lines of `low` and `high`, from one end on, differ by next to nothing: a bar. Not more than 45 %. */
-int bar_lines(const cv::Mat &low, const cv::Mat &high, bool from_end)
+bool is_dark_and_flat(const cv::Mat &line)
 {
-    const int lines = int(low.total()), most = lines * 45 / 100;
+    int low = 255, high = 0;
+    for (int i = 0; i < int(line.total()); i++) {
+        const int level = line.at<uchar>(i);
+        low = std::min(low, level);
+        high = std::max(high, level);
+    }
+    return high <= kBlack && high - low <= kFlat;
+}
+
+/* The thickness of the bar at one edge: rows from the top or bottom, or columns from the left or right, that are dark
+ * and flat; at most 45 % of the picture. */
+int bar_thickness(const cv::Mat &picture, bool columns, bool from_end)
+{
+    const int lines = columns ? picture.cols : picture.rows, most = lines * 45 / 100;
     int bar = 0;
     while (bar < most) {
         const int i = from_end ? lines - 1 - bar : bar;
-        if (high.data[i] > kBlack || high.data[i] - low.data[i] > kFlat)
+        if (!is_dark_and_flat(columns ? picture.col(i) : picture.row(i)))
             break;
         bar++;
     }
     return bar;
 }
 
-/* The picture within letterbox or pillarbox bars. A corner where the scene goes behind a bar moves with neither, so a
- * window's radius is left out there; where there is no bar, nothing is. */
+/* The picture within letterbox or pillarbox bars. At the edge of a bar, a corner between bar and scene moves with
+ * neither, so a margin of half a window is left out there. */
 cv::Rect active_area(const cv::Mat &picture)
 {
     int bar[4]; /* top, bottom, left, right */
-    for (int side = 0; side < 2; side++) {
-        cv::Mat low, high;
-        cv::reduce(picture, low, side == 0 ? 1 : 0, cv::REDUCE_MIN);
-        cv::reduce(picture, high, side == 0 ? 1 : 0, cv::REDUCE_MAX);
-        for (int end = 0; end < 2; end++) {
-            bar[2 * side + end] = bar_lines(low, high, end == 1);
-            if (bar[2 * side + end] > 0)
-                bar[2 * side + end] += L1L2_LK_WINDOW / 2 + 1;
-        }
+    for (int side = 0; side < 4; side++) {
+        bar[side] = bar_thickness(picture, side >= 2, side % 2 == 1);
+        if (bar[side] > 0)
+            bar[side] += L1L2_LK_WINDOW / 2 + 1;
     }
     const cv::Rect inner(bar[2], bar[0], picture.cols - bar[2] - bar[3], picture.rows - bar[0] - bar[1]);
     return inner.width > 0 && inner.height > 0 ? inner : cv::Rect(cv::Point(), picture.size());
@@ -183,18 +199,6 @@ cv::Rect scaled(cv::Rect area, int factor, cv::Size small, cv::Size size)
     return {area.x * factor, area.y * factor, right - area.x * factor, bottom - area.y * factor};
 }
 
-/* What follows points through a pyramid, every second entry of which has a level's slopes. Returns how many levels. */
-int levels(const std::vector<cv::Mat> &pyramid, L1L2LkLevel *level)
-{
-    const int count = int(pyramid.size()) / 2;
-    for (int i = 0; i < count; i++) {
-        const cv::Mat &grey = pyramid[size_t(2 * i)], &slope = pyramid[size_t(2 * i + 1)];
-        level[i] = {grey.ptr<uchar>(), slope.ptr<int16_t>(), ptrdiff_t(grey.step), ptrdiff_t(slope.step1()),
-                    grey.cols, grey.rows};
-    }
-    return count;
-}
-
 /* Cell by cell from left to right, row by row. */
 cv::Rect cell_area(cv::Size size, int cell)
 {
@@ -209,17 +213,80 @@ int cell_of(const L1L2Vision *v, L1L2Pixel p)
     return std::clamp(y, 0, kCellsY - 1) * kCellsX + std::clamp(x, 0, kCellsX - 1);
 }
 
+/* Pixels of a corner map that are above `least`, no smaller than their eight neighbors, and wanted by the mask; the
+ * strongest first. Equal ones are taken from the last row and column on, so that the order is always the same. */
+std::vector<cv::Point> local_maxima(const cv::Mat &strength, float least, const cv::Mat &mask)
+{
+    std::vector<cv::Point> found;
+    const auto kept = [least](float value) { return value > least ? value : 0.0f; };
+    for (int y = 1; y < strength.rows - 1; y++) {
+        const float *above = strength.ptr<float>(y - 1), *here = strength.ptr<float>(y);
+        const float *below = strength.ptr<float>(y + 1);
+        const uchar *wanted = mask.ptr<uchar>(y);
+        for (int x = 1; x < strength.cols - 1; x++) {
+            const float value = here[x];
+            if (!(value > least) || value == 0.0f || !wanted[x])
+                continue;
+            bool largest = true;
+            for (int i = x - 1; i <= x + 1 && largest; i++)
+                largest = value >= kept(above[i]) && value >= kept(here[i]) && value >= kept(below[i]);
+            if (largest)
+                found.emplace_back(x, y);
+        }
+    }
+    std::sort(found.begin(), found.end(), [&strength](cv::Point a, cv::Point b) {
+        const float u = strength.at<float>(a), v = strength.at<float>(b);
+        return u != v ? u > v : a.y != b.y ? a.y > b.y : a.x > b.x;
+    });
+    return found;
+}
+
+/* Takes `maxima` in their order, leaving out what is nearer than `distance` to one already taken, up to `quota`. The
+ * points taken are kept in square cells of that size, so that only nine cells are searched for a neighbor. */
+std::vector<cv::Point> spread_out(const std::vector<cv::Point> &maxima, cv::Size size, double distance, int quota)
+{
+    std::vector<cv::Point> taken;
+    const int side = std::max(1, cvRound(distance));
+    const cv::Size cells((size.width + side - 1) / side, (size.height + side - 1) / side);
+    std::vector<std::vector<cv::Point>> cell(size_t(cells.area()));
+    for (const cv::Point p : maxima) {
+        const cv::Rect around = cv::Rect(p.x / side - 1, p.y / side - 1, 3, 3) & cv::Rect(cv::Point(), cells);
+        bool near = false;
+        for (int y = around.y; y < around.br().y && !near; y++)
+            for (int x = around.x; x < around.br().x && !near; x++)
+                for (const cv::Point q : cell[size_t(y * cells.width + x)])
+                    near = near || (p - q).dot(p - q) < distance * distance;
+        if (near)
+            continue;
+        cell[size_t(p.y / side * cells.width + p.x / side)].push_back(p);
+        taken.push_back(p);
+        if (int(taken.size()) == quota)
+            break;
+    }
+    return taken;
+}
+
+/* Shi & Tomasi's corners of one area: the smaller eigenvalue of the structure tensor over 3x3 pixels, its local maxima
+ * down to kCornerQuality of the strongest. The result of cv::goodFeaturesToTrack(), which calls cv::parallel_for_(). */
+std::vector<cv::Point> corners_of(const cv::Mat &picture, const cv::Mat &mask, int quota, double distance)
+{
+    cv::Mat strength;
+    double strongest = 0.0;
+    cv::cornerMinEigenVal(picture, strength, 3, 3);
+    cv::minMaxLoc(strength, nullptr, &strongest, nullptr, nullptr, mask);
+    return spread_out(local_maxima(strength, float(strongest * kCornerQuality), mask), picture.size(), distance, quota);
+}
+
 /* Up to `quota` corners of an area, in pixels of the downscaled picture; those found are masked for the areas to come.
  * Returns how many. */
 int corners_in(L1L2Vision *v, const cv::Mat &picture, cv::Rect area, int quota, double distance, float scale,
                L1L2Pixel *corners)
 {
-    cv::goodFeaturesToTrack(picture(area), v->from, quota, kCornerQuality, distance, v->mask(area));
-    const int found = std::min(quota, int(v->from.size()));
-    for (int i = 0; i < found; i++) {
-        const cv::Point2f p = v->from[size_t(i)] + cv::Point2f(area.tl());
+    int found = 0;
+    for (const cv::Point corner : corners_of(picture(area), v->mask(area), quota, distance)) {
+        const cv::Point p = corner + area.tl();
         cv::circle(v->mask, p, cvCeil(distance), cv::Scalar(0), cv::FILLED);
-        corners[i] = {p.x * scale, p.y * scale};
+        corners[found++] = {float(p.x) * scale, float(p.y) * scale};
     }
     return found;
 }
@@ -237,6 +304,8 @@ L1L2StabResult l1l2_vision_create(L1L2Vision **out, const L1L2VisionConfig *cfg)
         l1l2_lk_functions_init(&v->lucas_kanade, l1l2_cpu_features());
         v->size = cv::Size(scaled_side(*cfg, cfg->width), scaled_side(*cfg, cfg->height));
         v->active = cv::Rect(cv::Point(), v->size);
+        v->pyramid = pyramid(v->size);
+        v->previous_pyramid = pyramid(v->size);
         v->to_grey = scaler(cfg->format, cv::Size(cfg->width, cfg->height), v->size);
         v->to_thumbnail = scaler(l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8), v->size,
                                  cv::Size(L1L2_THUMBNAIL_W, L1L2_THUMBNAIL_H));
@@ -264,11 +333,9 @@ void l1l2_vision_size(const L1L2Vision *v, int *width, int *height)
 L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t stride)
 {
     return guard(v->cfg.log, [&] {
-        cv::swap(v->grey, v->previous_grey);
         std::swap(v->pyramid, v->previous_pyramid);
-        v->grey.create(v->size, CV_8U);
-        l1l2_image_scale_run(v->to_grey.get(), data, stride, v->grey.data, ptrdiff_t(v->grey.step));
-        cv::buildOpticalFlowPyramid(v->grey, v->pyramid, border, kLevels);
+        l1l2_image_scale_run(v->to_grey.get(), data, stride, v->pyramid->grey[0], v->pyramid->level[0].stride);
+        l1l2_motion_pyramid_build(v->pyramid.get());
         v->pictures = std::min(v->pictures + 1, 2);
         if (v->pictures == 2)
             match_brightness(v);
@@ -278,8 +345,8 @@ L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t
 L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail)
 {
     return guard(v->cfg.log, [&] {
-        l1l2_image_scale_run(v->to_thumbnail.get(), v->grey.data, ptrdiff_t(v->grey.step), thumbnail->level,
-                       L1L2_THUMBNAIL_W);
+        l1l2_image_scale_run(v->to_thumbnail.get(), v->pyramid->grey[0], v->pyramid->level[0].stride,
+                             thumbnail->level, L1L2_THUMBNAIL_W);
     });
 }
 
@@ -290,10 +357,9 @@ L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int co
     if (v->pictures < 2 || capacity <= 0) /* OpenCV takes a capacity of 0 for none at all */
         return L1L2STAB_OK;
     return guard(v->cfg.log, [&] {
-        /* Corners of the half-size level (every second entry is a level's derivatives): as good to follow, for a
-         * quarter of the time. */
-        const bool half = v->previous_pyramid.size() > 2;
-        const cv::Mat &picture = half ? v->previous_pyramid[2] : v->previous_grey;
+        /* Corners of the half-size level are as good to follow, for a quarter of the time. */
+        const bool half = v->previous_pyramid->levels > 1;
+        const cv::Mat picture = picture_of(v->previous_pyramid, half ? 1 : 0);
         const float scale = half ? 2.0f : 1.0f;
         const double distance = min_distance / double(scale);
         const cv::Rect active = active_area(picture);
@@ -326,8 +392,8 @@ L1L2StabResult l1l2_vision_track(L1L2Vision *v, const L1L2Pixel *from, L1L2Pixel
     if (v->pictures < 2 || count <= 0)
         return L1L2STAB_OK;
     return guard(v->cfg.log, [&] {
-        L1L2LkLevel before[kLevels + 1], now[kLevels + 1];
-        const int all = std::min(levels(v->previous_pyramid, before), levels(v->pyramid, now));
+        const L1L2LkLevel *before = v->previous_pyramid->level, *now = v->pyramid->level;
+        const int all = v->pyramid->levels;
         for (int i = 0; i < count; i++) {
             const L1L2LkPoint start = {from[i].x, from[i].y};
             L1L2LkPoint there = start, back = start;

@@ -296,9 +296,10 @@ START_TEST(an_exception_becomes_an_error_and_a_message)
     create(64, 64, L1L2STAB_FORMAT_GRAY8);
     advance_flat(64, 64, 1, 0);
     advance_flat(64, 64, 1, 0);
+    const L1L2Pixel taken = {32.0f, 32.0f};
     L1L2Pixel corner;
-    int found;
-    ck_assert_int_eq(l1l2_vision_corners(vision, NULL, 0, NULL, -1.0, &corner, 1, &found), L1L2STAB_ERR_BACKEND);
+    int found; /* a circle of a negative radius is refused */
+    ck_assert_int_eq(l1l2_vision_corners(vision, &taken, 1, NULL, -10.0, &corner, 1, &found), L1L2STAB_ERR_BACKEND);
     ck_assert_int_eq(messages, 1);
 }
 END_TEST

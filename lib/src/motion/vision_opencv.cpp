@@ -3,9 +3,9 @@
  * Implements vision.h with OpenCV. This is the only C++ file of the library and the only one that includes OpenCV.
  *
  * No exception leaves this file. None of OpenCV's process-wide state (threads, parallel regions, random numbers) is
- * touched: cv::parallel_for_ marks the whole process as being inside a parallel region, so that parallel loops of the
- * application would run serially meanwhile. Only OpenCV functions that never call cv::parallel_for_ are used here, which
- * test_vision checks; what would call it (the pyramid, the selection among corner candidates) is the library's own code.
+ * touched: cv::parallel_for_() marks the whole process as being inside a parallel region, so that parallel loops of the
+ * application would run serially meanwhile. Only OpenCV functions that never call cv::parallel_for_() are used here;
+ * tests/lib/motion/opencv_host.cpp checks that. What would call it (the pyramid, the choice of corners) is our own code.
  */
 #include "motion/vision.h"
 

@@ -168,7 +168,7 @@ int main()
     } while (!done);
     library.join();
     ok &= check(backend->regions == loops, "the application's loops stay parallel while the library works");
-    ok &= check(survives_failed_allocations(clip), "a failed allocation of OpenCV is reported, and all frames come out");
+    ok &= check(survives_failed_allocations(clip), "a failed allocation is reported, and all frames come out");
     for (SynthPicture picture : clip)
         synth_picture_free(&picture);
     return ok ? 0 : 1;

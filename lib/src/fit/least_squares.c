@@ -10,7 +10,7 @@ typedef struct Moments {
     double vu[2][2];                           /* sums of vx ux, vx uy; vy ux, vy uy */
 } Moments;
 
-/* What has no weight is not even looked at: it need not be finite. */
+/* A pair of weight 0 is skipped, because it need not be finite. */
 static double weight_of(const double *weights, int i)
 {
     return weights ? weights[i] : 1.0;
@@ -44,7 +44,8 @@ static Moments moments(const L1L2Pair *pairs, const double *weights, int count)
     return m;
 }
 
-/* As complex numbers v = (a + ib) u: a + ib = sum conj(u) v / sum |u|^2. */
+/* With points as complex numbers the similarity is v = (a + ib) u. The sum of w |v - (a + ib) u|^2 is least for
+ * a + ib = sum w conj(u) v / sum w |u|^2. */
 static bool fit_similarity(const Moments *m, double linear[4])
 {
     const double spread = m->uu[0] + m->uu[2];
@@ -54,7 +55,7 @@ static bool fit_similarity(const Moments *m, double linear[4])
     return spread > 0.0 && hypot(a, b) > 0.0;
 }
 
-/* The normal equations of each row: [a b] = [vx ux, vx uy] uu^-1. */
+/* The normal equations of each row of the linear part: [a b] = [sum vx ux, sum vx uy] (sum u u')^-1. */
 static bool fit_affine(const Moments *m, double linear[4])
 {
     const double determinant = m->uu[0] * m->uu[2] - m->uu[1] * m->uu[1], spread = m->uu[0] + m->uu[2];
@@ -83,7 +84,7 @@ double l1l2_fit_extent(L1L2StabMotionModel model, const L1L2Pair *set)
     const L1L2Point q = set[1].from;
     if (model == L1L2STAB_MOTION_MODEL_SIMILARITY)
         return distance(p, q);
-    const L1L2Point r = set[2].from; /* the triangle's least height */
+    const L1L2Point r = set[2].from;
     const double area = fabs((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x));
     const double longest = fmax(distance(p, q), fmax(distance(q, r), distance(r, p)));
     return longest > 0.0 ? area / longest : 0.0;

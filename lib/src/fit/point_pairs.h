@@ -1,22 +1,29 @@
 /* SPDX-License-Identifier: MIT */
-/* Point pairs, what they weigh, and how much of the frame they cover: what every fit of this folder works on. */
+/* Point pairs of two frames with their weights: the data that every fit of this folder works on. */
 #ifndef L1L2_FIT_POINT_PAIRS_H
 #define L1L2_FIT_POINT_PAIRS_H
 
 #include "common/geom.h"
+#include "common/rng.h"
+
+enum { L1L2_RANSAC_MAX_PAIRS = 512 }; /* in a track set */
 
 /* A point of frame t and where the same point lies in frame t-1. */
 typedef struct L1L2Pair {
     L1L2Point from, to;
 } L1L2Pair;
 
-/* What the pairs count, one number each, >= 0; NULL: each counts 1. */
-typedef struct L1L2PairWeights {
-    const double *votes;   /* when it is decided whose map it is */
-    const double *weights; /* in the least squares after that */
-} L1L2PairWeights;
+/* The tracks of one frame, to which a map is fitted. */
+typedef struct L1L2TrackSet {
+    const L1L2Pair *pairs;
+    const double *consensus_weights; /* >= 0: the map whose inliers have most of them wins; NULL: each track has 1 */
+    const double *fit_weights;       /* >= 0: in the least squares on the inliers; NULL: each track has 1 */
+    int count;                       /* of pairs and weights, at most L1L2_RANSAC_MAX_PAIRS */
+    double threshold;                /* largest distance of an inlier, in the pairs' unit */
+    L1L2Rng *rng;                    /* of RANSAC's draws */
+} L1L2TrackSet;
 
-/* The frame in 8x6 cells: what coverage and track weights count by. */
+/* The frame in 8x6 cells: coverage and track weights count by them. */
 enum { L1L2_FIT_CELLS_X = 8, L1L2_FIT_CELLS_Y = 6, L1L2_FIT_CELLS = L1L2_FIT_CELLS_X * L1L2_FIT_CELLS_Y };
 
 /* The part of the frame's cells in which an inlier lies, [0, 1]. half_w, half_h: half of the frame's size in the

@@ -5,30 +5,25 @@
 
 #include "fit/least_squares.h"
 
-/* With half of the pairs wrong, 300 draws of two miss all good pairs once in 10^37; the count adapts downwards. */
+/* With half of the pairs wrong, 300 draws of two miss all good pairs once in 10^37. Fewer are drawn once a set of
+ * inliers is found: as many as miss all good pairs with the probability below. */
 static const int max_draws = 300, min_draws = 10;
 static const double miss_probability = 1e-4;
+/* A minimal set nearer together than this many thresholds is degenerate: noise of its points rotates and scales the map
+ * by a tenth or more. */
+static const double min_extent = 10.0;
+/* Refits end when the map moves no pair by more than this many thresholds. Two or three are usual. */
 static const int max_refits = 8;
-static const double settled = 1e-3; /* of the threshold */
+static const double converged = 1e-3;
 
-typedef struct Problem {
-    L1L2StabMotionModel model;
-    int size; /* pairs in a smallest set */
-    const L1L2Pair *pairs;
-    L1L2PairWeights say;
-    int count;
-    double threshold;
-    L1L2Rng *rng;
-} Problem;
-
-/* Draws a smallest set and fits it exactly. False where it is degenerate: nearer to each other, or to one line, than a
- * few thresholds, noise turns and stretches the map at will. */
-static bool draw(const Problem *p, L1L2Mat *fit)
+/* Draws a minimal set and fits it exactly. False if it is degenerate. */
+static bool draw(L1L2StabMotionModel model, const L1L2TrackSet *tracks, L1L2Mat *fit)
 {
     L1L2Pair set[L1L2_FIT_MAX_SIZE];
-    for (int i = 0; i < p->size; i++)
-        set[i] = p->pairs[l1l2_rng_below(p->rng, (uint32_t)p->count)];
-    return l1l2_fit_extent(p->model, set) >= 10.0 * p->threshold && l1l2_fit(p->model, set, NULL, p->size, fit);
+    const int size = l1l2_fit_size(model);
+    for (int i = 0; i < size; i++)
+        set[i] = tracks->pairs[l1l2_rng_below(tracks->rng, (uint32_t)tracks->count)];
+    return l1l2_fit_extent(model, set) >= min_extent * tracks->threshold && l1l2_fit(model, set, NULL, size, fit);
 }
 
 static double squared_residual(const L1L2Mat *fit, const L1L2Pair *pair)
@@ -38,26 +33,27 @@ static double squared_residual(const L1L2Mat *fit, const L1L2Pair *pair)
     return dx * dx + dy * dy;
 }
 
-static double share(const double *of, int i)
+static double weight_of(const double *weights, int i)
 {
-    return of ? of[i] : 1.0;
+    return weights ? weights[i] : 1.0;
 }
 
-/* Returns the inliers' votes. */
-static double mark_inliers(const Problem *p, const L1L2Mat *fit, bool *inlier, int *inliers)
+/* Marks the inliers and counts them. Returns their consensus weight. */
+static double mark_inliers(const L1L2TrackSet *tracks, const L1L2Mat *fit, bool *inlier, int *inliers)
 {
-    double votes = 0.0;
+    double weight = 0.0;
     *inliers = 0;
-    for (int i = 0; i < p->count; i++) {
-        inlier[i] = squared_residual(fit, &p->pairs[i]) <= p->threshold * p->threshold;
+    for (int i = 0; i < tracks->count; i++) {
+        inlier[i] = squared_residual(fit, &tracks->pairs[i]) <= tracks->threshold * tracks->threshold;
         *inliers += inlier[i];
         if (inlier[i])
-            votes += share(p->say.votes, i);
+            weight += weight_of(tracks->consensus_weights, i);
     }
-    return votes;
+    return weight;
 }
 
-/* Draws after which a set of good pairs has most probably come up, at this share of inliers. */
+/* The number of draws n of `size` pairs each after which no draw was all good with miss_probability, at this share of
+ * good pairs: (1 - share^size)^n = miss_probability. */
 static int draws_needed(double share, int size)
 {
     const double good = pow(share, size);
@@ -67,70 +63,72 @@ static int draws_needed(double share, int size)
     return needed < min_draws ? min_draws : needed > max_draws ? max_draws : (int)ceil(needed);
 }
 
-/* Tukey's weights, with a scale at which the last of the inliers still has half: their noise is far below the
- * threshold, and what lies near it is another depth or drifting. */
-static bool refit(const Problem *p, const bool *inlier, L1L2Mat *fit)
+/* Least squares with Tukey's weights (1 - r^2 / (2 threshold)^2)^2. At this scale an inlier at the threshold still has a
+ * weight of about half. The noise of good tracks is far below the threshold; tracks near it drift or lie at another
+ * depth. */
+static bool refit(L1L2StabMotionModel model, const L1L2TrackSet *tracks, const bool *inlier, L1L2Mat *fit)
 {
     double weights[L1L2_RANSAC_MAX_PAIRS];
-    for (int i = 0; i < p->count; i++) {
-        const double r2 = squared_residual(fit, &p->pairs[i]) / (4.0 * p->threshold * p->threshold);
-        weights[i] = inlier[i] ? (1.0 - r2) * (1.0 - r2) * share(p->say.weights, i) : 0.0;
+    for (int i = 0; i < tracks->count; i++) {
+        const double r2 =
+            squared_residual(fit, &tracks->pairs[i]) / (4.0 * tracks->threshold * tracks->threshold);
+        weights[i] = inlier[i] ? (1.0 - r2) * (1.0 - r2) * weight_of(tracks->fit_weights, i) : 0.0;
     }
-    return l1l2_fit(p->model, p->pairs, weights, p->count, fit);
+    return l1l2_fit(model, tracks->pairs, weights, tracks->count, fit);
 }
 
-/* How far apart two maps put the pairs' points. */
-static double change(const Problem *p, const L1L2Mat *a, const L1L2Mat *b)
+/* The largest distance between two maps' images of the pairs' points. */
+static double change(const L1L2TrackSet *tracks, const L1L2Mat *a, const L1L2Mat *b)
 {
     double most = 0.0;
-    for (int i = 0; i < p->count; i++) {
-        const L1L2Point u = l1l2_mat_apply(a, p->pairs[i].from), v = l1l2_mat_apply(b, p->pairs[i].from);
+    for (int i = 0; i < tracks->count; i++) {
+        const L1L2Point p = tracks->pairs[i].from, u = l1l2_mat_apply(a, p), v = l1l2_mat_apply(b, p);
         most = fmax(most, hypot(u.x - v.x, u.y - v.y));
     }
     return most;
 }
 
-/* Reweighted least squares until map and inliers settle; returns their number. */
-static int settle(const Problem *p, bool *inlier, L1L2Mat *fit)
+/* Refits on the inliers until neither map nor inliers change. Returns the number of inliers, 0 for no map. */
+static int refine(L1L2StabMotionModel model, const L1L2TrackSet *tracks, bool *inlier, L1L2Mat *fit)
 {
+    const int size = l1l2_fit_size(model);
     int inliers;
-    mark_inliers(p, fit, inlier, &inliers);
-    for (int i = 0; i < max_refits && inliers >= p->size; i++) {
+    mark_inliers(tracks, fit, inlier, &inliers);
+    for (int i = 0; i < max_refits && inliers >= size; i++) {
         const L1L2Mat before = *fit;
-        if (!refit(p, inlier, fit))
+        if (!refit(model, tracks, inlier, fit))
             return 0;
-        mark_inliers(p, fit, inlier, &inliers);
-        if (change(p, &before, fit) <= settled * p->threshold)
+        mark_inliers(tracks, fit, inlier, &inliers);
+        if (change(tracks, &before, fit) <= converged * tracks->threshold)
             break;
     }
-    return inliers >= p->size ? inliers : 0;
+    return inliers >= size ? inliers : 0;
 }
 
-int l1l2_ransac(L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2PairWeights say, int count, double threshold,
-                L1L2Rng *rng, bool *inlier, L1L2Mat *fit)
+int l1l2_ransac(L1L2StabMotionModel model, const L1L2TrackSet *tracks, bool *inlier, L1L2Mat *fit)
 {
-    const Problem p = {model, l1l2_fit_size(model), pairs, say, count, threshold, rng};
-    double most = 0.0, all = 0.0;
+    const int count = tracks->count, size = l1l2_fit_size(model);
+    double best = 0.0, all = 0.0;
     int inliers = 0;
     for (int i = 0; i < count; i++)
-        all += share(say.votes, i);
+        all += weight_of(tracks->consensus_weights, i);
     *fit = l1l2_mat_identity();
-    for (int drawn = 0, draws = max_draws; count >= p.size && drawn < draws; drawn++) {
+    for (int drawn = 0, draws = max_draws; count >= size && drawn < draws; drawn++) {
         L1L2Mat candidate;
         int agreeing;
-        if (!draw(&p, &candidate))
+        if (!draw(model, tracks, &candidate))
             continue;
-        const double agreed = mark_inliers(&p, &candidate, inlier, &agreeing);
-        if (agreed > most) {
-            most = agreed;
+        const double weight = mark_inliers(tracks, &candidate, inlier, &agreeing);
+        if (weight > best) {
+            best = weight;
             *fit = candidate;
-            /* While the others have more votes, it may be a smaller set of theirs that wins. */
-            const int smaller = agreed < all - agreed && 2 * agreeing > count ? count - agreeing : agreeing;
-            draws = draws_needed((double)smaller / count, p.size);
+            /* While the others outweigh these inliers, the final winner may be a smaller set of the others. */
+            const int smaller = weight < all - weight && 2 * agreeing > count ? count - agreeing : agreeing;
+            draws = draws_needed((double)smaller / count, size);
         }
     }
-    if (most > 0.0)
-        inliers = settle(&p, inlier, fit);
+    if (best > 0.0)
+        inliers = refine(model, tracks, inlier, fit);
     if (inliers == 0) {
         for (int i = 0; i < count; i++)
             inlier[i] = false;

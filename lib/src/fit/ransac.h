@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Robust fit of a map to point pairs: RANSAC (Fischler & Bolles 1981) with a seeded generator, then iteratively
- * reweighted least squares on the inliers until they settle. No allocation.
+ * Robust fit of a map to point pairs: RANSAC (Fischler & Bolles, 1981) with a seeded generator, then iteratively
+ * reweighted least squares (Tukey's weights) on the inliers until map and inliers no longer change. No allocation.
  */
 #ifndef L1L2_FIT_RANSAC_H
 #define L1L2_FIT_RANSAC_H
@@ -11,10 +11,9 @@
 #include "common/rng.h"
 #include "fit/point_pairs.h"
 
-/* The map `from` -> `to` whose inliers, the pairs within `threshold` of it, have the most votes together, refitted on
- * them. inlier: `count` flags out. Any unit. Returns the number of inliers; 0, and *fit the identity, where no map
- * exists: fewer pairs than it takes, all points in one place or in one line, nothing finite. */
-int l1l2_ransac(L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2PairWeights say, int count, double threshold,
-                L1L2Rng *rng, bool *inlier, L1L2Mat *fit);
+/* Fits the map `from` -> `to` whose inliers have the largest sum of consensus weights, then refits it on them.
+ * inlier: tracks->count flags, written. The unit is the pairs'. Returns the number of inliers. Returns 0 and the identity
+ * if no map exists: too few pairs, all points in one place or on one line, or none that is finite. */
+int l1l2_ransac(L1L2StabMotionModel model, const L1L2TrackSet *tracks, bool *inlier, L1L2Mat *fit);
 
 #endif

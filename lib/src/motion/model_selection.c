@@ -4,101 +4,270 @@
 #include <math.h>
 #include <string.h>
 
-#include "fit/least_squares.h"
+#include "fit/ransac.h"
 #include "rolling_shutter/similarity_by_rows.h"
 
-/* What a camera does from one frame to the next; beyond it, the fit is wrong. */
-static const double min_scale = 0.8, max_scale = 1.25, max_rotation_rad = 0.25;
-static const int min_inliers = 30, min_inliers_translation = 8;
-static const double min_inlier_share = 0.2;
-/* Few points tell where the picture went, but not how it turned: a wider threshold, and more of them have to agree. */
-static const double wider = 2.0, min_share_fallback = 0.5;
-/* Points of nothing but noise agree with a shift if it is wide enough; then they fill the circle around it evenly. */
-static const double max_spread = 0.5; /* rms of the inliers' residuals, of the threshold; evenly filled it is 0.71 */
-/* Where fewer agree, rows may have moved differently. */
-static const double most_agree = 0.7;
-/* The inner threshold, of the outer one; the part of the inliers' votes that has to agree so well; the part left
- * then, at least, and what of it has to agree with itself as well; and how far apart both are. */
-static const double sharper = 0.3, min_core = 0.5, min_rest = 0.05, min_second = 0.8, min_apart = 0.5;
-/* Up again. */
-static const double plenty = 1.5;
-static const int good_frames = 3;
+enum { MAX = L1L2_RANSAC_MAX_PAIRS };
 
-/* Where nothing can be measured, the last motion goes on and fades; after this many frames it is gone. */
-static const int max_predicted = 15;
-static const double prediction_fade = 0.8;
-
-/* Another motion is looked for among outliers that have this part of the votes. */
-static const double min_rival_share = 0.1;
-static const int min_rival_inliers = 8;
-/* A motion that does not rise above what the tracks' noise makes of it is none: the dark would shake. Below the first,
- * in thresholds, noise is not in question (200 good tracks: 0.01). */
-static const double clear_error = 0.035, significant = 3.0, most_unseen = 3.0;
-/* So long a motion has been none, so many times what noise makes of it; what is left of a sum from frame to frame. */
-static const int still_frames = 15;
-static const double still_errors = 4.0, still_memory = 0.98;
-/* Next to the inliers it is another depth of the same scene, and no harm to follow; from here on, in thresholds, it is
- * another thing. */
-static const double far_apart = 4.0;
-/* Below it, a motion is as likely the subject's as the background's. */
-static const double min_quality = 0.12;
-/* Inliers in this part of the cells are as good as all over the frame. */
-static const double full_coverage = 0.3;
-
-void l1l2_motion_model_reset(L1L2ModelSelection *l)
+void l1l2_motion_model_reset(L1L2ModelSelection *s)
 {
-    l->rung = l->wanted;
-    l->waiting = l->lost = 0;
-    l->last = l1l2_mat_identity();
-    l->agreed = 1.0;
-    memset(&l->still, 0, sizeof l->still);
+    s->current = s->highest;
+    s->acceptable_frames = s->lost = 0;
+    s->last = l1l2_mat_identity();
+    s->agreement = 1.0;
+    memset(&s->still, 0, sizeof s->still);
 }
 
-/* The singular values of the linear part lie within the scales, and it turns little. */
-static bool plausible(const L1L2Mat *F)
-{
-    const double a = F->m[0], b = F->m[1], c = F->m[3], d = F->m[4];
-    const double turn = hypot(a + d, c - b) / 2.0, shear = hypot(a - d, b + c) / 2.0;
-    return turn - shear >= min_scale && turn + shear <= max_scale && fabs(atan2(c - b, a + d)) <= max_rotation_rad;
-}
-
-static double spread(const L1L2Mat *F, const L1L2Pair *pairs, const bool *inlier, int count)
+/* Root mean square of the distances between F's prediction and the marked tracks. */
+static double rms_residual(const L1L2Mat *F, const L1L2TrackSet *tracks, const bool *marked)
 {
     double sum = 0.0;
-    int inliers = 0;
-    for (int i = 0; i < count; i++)
-        if (inlier[i]) {
-            const L1L2Point p = l1l2_mat_apply(F, pairs[i].from);
-            sum += (p.x - pairs[i].to.x) * (p.x - pairs[i].to.x) + (p.y - pairs[i].to.y) * (p.y - pairs[i].to.y);
-            inliers++;
+    int count = 0;
+    for (int i = 0; i < tracks->count; i++)
+        if (marked[i]) {
+            const L1L2Pair *pair = &tracks->pairs[i];
+            const L1L2Point p = l1l2_mat_apply(F, pair->from);
+            sum += (p.x - pair->to.x) * (p.x - pair->to.x) + (p.y - pair->to.y) * (p.y - pair->to.y);
+            count++;
         }
-    return sqrt(sum / inliers);
+    return sqrt(sum / count);
 }
 
-/* How far off the corners are to be expected, from the scatter of the inliers about F. What noise scatters beyond the
- * threshold is not seen, so few inliers mean more of it, if only up to a point: there are other outliers. */
-static double expected_error(const L1L2ModelSelection *l, const L1L2TrackWeights *v, const L1L2SelectedModel *r,
-                             const L1L2Pair *pairs, const bool *inlier, int count)
+static double weight_of(const double *weights, const bool *marked, int count)
 {
-    const double n = r->inliers, deviation = spread(&r->F, pairs, inlier, count) / sqrt(2.0);
-    double radius2 = 0.0;
+    double sum = 0.0;
     for (int i = 0; i < count; i++)
-        if (inlier[i])
-            radius2 += (pairs[i].from.x * pairs[i].from.x + pairs[i].from.y * pairs[i].from.y) / n;
-    const double corner2 = v->half_w * v->half_w + v->half_h * v->half_h;
-    const double lever =
-        r->model == L1L2STAB_MOTION_SOURCE_TRANSLATION || radius2 == 0.0 ? 1.0 : 1.0 + corner2 / radius2;
-    const double unseen = fmin(count * count / (n * n), most_unseen);
-    return deviation * sqrt(lever / n) * unseen;
+        sum += !marked || marked[i] ? weights[i] : 0.0;
+    return sum;
 }
 
-/* F as far as it is significant: Wiener's gain, over the identity. */
-static L1L2Mat significant_part(const L1L2ModelSelection *l, const L1L2Mat *F, double expected,
-                                const L1L2TrackWeights *v)
+/* Fits a map to the tracks that `members` marks. agreeing: flags of its inliers, written. Returns their number. */
+static int fit_among(L1L2StabMotionModel model, const L1L2TrackSet *tracks, const bool *members, bool *agreeing,
+                     L1L2Mat *F)
+{
+    L1L2Pair pairs[MAX] = {0};
+    double consensus[MAX], fit[MAX];
+    bool inlier[MAX];
+    L1L2TrackSet some = *tracks;
+    some.pairs = pairs, some.consensus_weights = consensus, some.fit_weights = fit;
+    some.count = 0;
+    for (int i = 0; i < tracks->count; i++)
+        if (members[i]) {
+            pairs[some.count] = tracks->pairs[i];
+            consensus[some.count] = tracks->consensus_weights[i];
+            fit[some.count++] = tracks->fit_weights[i];
+        }
+    const int inliers = l1l2_ransac(model, &some, inlier, F);
+    for (int i = 0, k = 0; i < tracks->count; i++)
+        agreeing[i] = members[i] && inlier[k++];
+    return inliers;
+}
+
+/* ---- Acceptance ---- */
+
+/* A model that was fitted to the tracks of a frame. */
+typedef struct Candidate {
+    L1L2StabMotionModel model;
+    L1L2Mat F;
+    int inliers;
+    bool by_rows; /* the rows moved differently */
+    bool inlier[MAX];
+} Candidate;
+
+static void fit_candidate(const L1L2ModelSelection *s, const L1L2TrackWeights *w, const L1L2TrackSet *tracks,
+                          L1L2StabMotionModel model, Candidate *c)
+{
+    L1L2TrackSet set = *tracks;
+    if (model == L1L2STAB_MOTION_MODEL_TRANSLATION)
+        set.threshold *= s->parameters->translation_threshold;
+    c->model = model;
+    c->inliers = l1l2_ransac(model, &set, c->inlier, &c->F);
+    c->by_rows = false;
+    if (model == L1L2STAB_MOTION_MODEL_SIMILARITY &&
+        c->inliers < s->parameters->rows_max_inlier_share * tracks->count) {
+        const L1L2ShutterRowTracks rows = {set.pairs, set.consensus_weights, set.count, w->half_h, set.threshold, NULL};
+        const int inliers = l1l2_shutter_similarity_by_rows(&rows, c->inlier, &c->F);
+        c->by_rows = inliers > 0;
+        if (c->by_rows)
+            c->inliers = inliers;
+    }
+}
+
+/* True if a camera makes this motion from one frame to the next: the singular values of its linear part are within the
+ * limits of scale, and so is its rotation. With [a b; c d] = R(phi) diag(u, v) R(psi), u and v are
+ * (|(a + d, c - b)| +- |(a - d, b + c)|) / 2. */
+static bool is_plausible(const L1L2MotionParameters *p, const L1L2Mat *F)
+{
+    const double a = F->m[0], b = F->m[1], c = F->m[3], d = F->m[4];
+    const double mean = hypot(a + d, c - b) / 2.0, difference = hypot(a - d, b + c) / 2.0;
+    return mean - difference >= p->min_scale && mean + difference <= p->max_scale &&
+           fabs(atan2(c - b, a + d)) <= p->max_rotation;
+}
+
+/* True if the model passes its acceptance tests. Few tracks still determine a translation, but more of them have to
+ * agree, and more closely than tracks of pure noise would. */
+static bool is_acceptable(const L1L2ModelSelection *s, const L1L2TrackWeights *w, const L1L2TrackSet *tracks,
+                          const Candidate *c)
+{
+    const L1L2MotionParameters *p = s->parameters;
+    if (c->model == L1L2STAB_MOTION_MODEL_TRANSLATION)
+        return c->inliers >= p->translation_min_inliers && c->inliers >= p->translation_min_share * tracks->count &&
+               rms_residual(&c->F, tracks, c->inlier) <=
+                   p->translation_max_spread * p->translation_threshold * s->threshold;
+    return c->inliers >= p->min_inliers && c->inliers >= p->min_inlier_share * tracks->count &&
+           is_plausible(p, &c->F) &&
+           (c->model == L1L2STAB_MOTION_MODEL_SIMILARITY ||
+            l1l2_fit_coverage(w->half_w, w->half_h, tracks->pairs, c->inlier, tracks->count) >= p->full_coverage);
+}
+
+/* Finds the highest acceptable model. One above the current model is put off until it has been acceptable for some
+ * frames, unless it has many inliers or nothing below it is acceptable. False: no model is acceptable. */
+static bool choose_candidate(L1L2ModelSelection *s, const L1L2TrackWeights *w, const L1L2TrackSet *tracks,
+                             Candidate *chosen)
+{
+    const L1L2MotionParameters *p = s->parameters;
+    Candidate put_off = {.inliers = 0};
+    bool found = false, waiting = false;
+    for (int model = (int)s->highest; model >= L1L2STAB_MOTION_MODEL_TRANSLATION && !found; model--) {
+        fit_candidate(s, w, tracks, (L1L2StabMotionModel)model, chosen);
+        if (!is_acceptable(s, w, tracks, chosen))
+            continue;
+        found = chosen->model <= s->current || chosen->inliers >= p->return_inlier_factor * p->min_inliers ||
+                s->acceptable_frames + 1 >= p->return_frames;
+        if (!found && !waiting) {
+            put_off = *chosen;
+            waiting = true;
+        }
+    }
+    if (!found && waiting)
+        *chosen = put_off;
+    s->acceptable_frames = found && waiting ? s->acceptable_frames + 1 : 0;
+    return found || waiting;
+}
+
+/* ---- Quality: does another motion compete? ---- */
+
+/* Looks for the best motion among the outliers. rival: flags of its inliers, written. Returns its distance from F at its
+ * own tracks, in rival_distance: 0 if there is none, 1 or more is another object rather than another depth. */
+static double find_rival(const L1L2ModelSelection *s, const L1L2TrackSet *tracks, const Candidate *c, bool *rival)
+{
+    const L1L2MotionParameters *p = s->parameters;
+    bool outlier[MAX] = {false};
+    L1L2Mat G;
+    for (int i = 0; i < tracks->count; i++)
+        outlier[i] = !c->inlier[i];
+    const int inliers = fit_among(L1L2STAB_MOTION_MODEL_SIMILARITY, tracks, outlier, rival, &G);
+    if (inliers < p->rival_min_inliers ||
+        rms_residual(&G, tracks, rival) > p->translation_max_spread * s->threshold)
+        return 0.0;
+    return fmin(1.0, rms_residual(&c->F, tracks, rival) / (p->rival_distance * s->threshold));
+}
+
+/* The part of the weight that agrees, less what a rival has. It is found with and without the tracks' history, and the
+ * lower value counts, because history would confirm a mistake. ambiguous: even with history the motion is as likely a
+ * subject's as the background's. */
+static double find_quality(const L1L2ModelSelection *s, const L1L2TrackWeights *w, const L1L2TrackSet *tracks,
+                           const Candidate *c, bool *ambiguous)
+{
+    const L1L2MotionParameters *p = s->parameters;
+    const int count = tracks->count;
+    double without_history[MAX];
+    bool rival[MAX] = {false};
+    double least = 1.0, distance = 0.0;
+    const double inlying = weight_of(tracks->consensus_weights, c->inlier, count);
+    const double all = weight_of(tracks->consensus_weights, NULL, count);
+    if (all - inlying >= p->rival_min_share * all)
+        distance = find_rival(s, tracks, c, rival);
+    for (int i = 0; i < count; i++)
+        without_history[i] = tracks->consensus_weights[i] / tracks->fit_weights[i];
+    for (int history = 1; history >= 0; history--) {
+        const double *weights = history ? tracks->consensus_weights : without_history;
+        const double agreed = weight_of(weights, c->inlier, count);
+        const double opposed = distance * weight_of(weights, rival, count);
+        least = fmin(least, agreed / weight_of(weights, NULL, count) * fmax(0.0, 1.0 - opposed / agreed));
+        if (history)
+            *ambiguous = least < p->min_quality;
+    }
+    const double coverage = l1l2_fit_coverage(w->half_w, w->half_h, tracks->pairs, c->inlier, count);
+    return least * fmin(1.0, coverage / p->full_coverage);
+}
+
+/* ---- The core: is one of two close motions the background's? ---- */
+
+/* The inliers may belong to two motions, each of which fits its tracks far better than the threshold requires: the
+ * background's and that of a slow subject or another surface. Then F and the core become those of the first alone. Where
+ * depth is continuous there are no two such motions, and F stays the mean of all inliers. */
+static void find_core(const L1L2ModelSelection *s, const L1L2TrackSet *tracks, const Candidate *c, bool *core,
+                      L1L2Mat *F)
+{
+    const L1L2MotionParameters *p = s->parameters;
+    bool first[MAX], second[MAX], rest[MAX] = {false};
+    L1L2Mat first_F, second_F;
+    L1L2TrackSet tight = *tracks;
+    const int count = tracks->count;
+    tight.threshold = p->core_threshold * s->threshold;
+    memcpy(core, c->inlier, (size_t)count * sizeof *core);
+    const double all = weight_of(tracks->consensus_weights, c->inlier, count);
+    fit_among(c->model, &tight, c->inlier, first, &first_F);
+    const double firsts = weight_of(tracks->consensus_weights, first, count);
+    if (firsts < p->core_min_share * all || firsts > all - p->core_min_rest * all)
+        return;
+    for (int i = 0; i < count; i++)
+        rest[i] = c->inlier[i] && !first[i];
+    fit_among(c->model, &tight, rest, second, &second_F);
+    if (weight_of(tracks->consensus_weights, second, count) < p->second_min_share * (all - firsts) ||
+        rms_residual(&first_F, tracks, second) < p->second_min_distance * s->threshold)
+        return;
+    memcpy(core, first, (size_t)count * sizeof *core);
+    *F = first_F;
+}
+
+/* ---- Noise: is the motion significant? ---- */
+
+/*
+ * The standard error of F at the frame's corners, from the scatter of the inliers about it.
+ *
+ * Let each coordinate of a track have the standard deviation sigma: rms_residual^2 = 2 sigma^2. Least squares over n
+ * tracks gives the mean with the variance sigma^2 / n per coordinate. A similarity's rotation and zoom add, at the
+ * distance R from the center, R^2 sigma^2 / (n r^2) where r^2 is the tracks' mean squared distance from the center. So
+ * the error at a corner is sigma sqrt((1 + R^2 / r^2) / n) per coordinate; a translation has the first term alone.
+ *
+ * Residuals beyond the threshold are missing from the scatter. If a part q = n / count of the tracks are inliers, the
+ * noise is larger than it seems. For residuals that fill the threshold evenly, the true scatter is larger by 1 / q; the
+ * square of that, at most max_truncation since there are other outliers too, is a cautious bound.
+ */
+static double standard_error(const L1L2ModelSelection *s, const L1L2TrackWeights *w, const L1L2TrackSet *tracks,
+                             const Candidate *c, const L1L2Mat *F)
+{
+    const double n = c->inliers, count = tracks->count;
+    const double sigma = rms_residual(F, tracks, c->inlier) / sqrt(2.0);
+    double radius2 = 0.0;
+    for (int i = 0; i < tracks->count; i++)
+        if (c->inlier[i]) {
+            const L1L2Point p = tracks->pairs[i].from;
+            radius2 += (p.x * p.x + p.y * p.y) / n;
+        }
+    const double corner2 = w->half_w * w->half_w + w->half_h * w->half_h;
+    const bool translation = c->model == L1L2STAB_MOTION_MODEL_TRANSLATION;
+    const double leverage = translation || radius2 == 0.0 ? 1.0 : 1.0 + corner2 / radius2;
+    return sigma * sqrt(leverage / n) * fmin(count * count / (n * n), s->parameters->max_truncation);
+}
+
+/*
+ * Shrinks F towards the identity by as much as it is noise: else a dark scene would shake.
+ *
+ * A motion m observed with noise e of variance N has |F - 1|^2 = m^2 + N on average. The linear estimate of m with the
+ * least squared error is the observation times Wiener's gain m^2 / (m^2 + N) = 1 - N / |F - 1|^2, limited to >= 0. N is
+ * (significance * error)^2, so that motions within that many standard errors vanish. Errors below negligible_error are
+ * not counted, so that well tracked frames keep their motion to the bit.
+ */
+static L1L2Mat shrink_to_significant(const L1L2ModelSelection *s, const L1L2TrackWeights *w, const L1L2Mat *F,
+                                     double error)
 {
     const L1L2Mat identity = l1l2_mat_identity();
-    const double error = fmax(0.0, expected - clear_error * l->threshold);
-    const double size = l1l2_mat_corner_distance(F, &identity, v->half_w, v->half_h), noise = significant * error;
+    const double counted = fmax(0.0, error - s->parameters->negligible_error * s->threshold);
+    const double size = l1l2_mat_corner_distance(F, &identity, w->half_w, w->half_h);
+    const double noise = s->parameters->significance * counted;
     const double gain = noise > 0.0 ? fmax(0.0, 1.0 - noise * noise / (size * size + 1e-300)) : 1.0;
     L1L2Mat part = *F;
     for (int i = 0; i < 6 && gain < 1.0; i++)
@@ -106,200 +275,90 @@ static L1L2Mat significant_part(const L1L2ModelSelection *l, const L1L2Mat *F, d
     return part;
 }
 
-/* Small errors of many frames add up to a drift, and a tripod's picture would wander. While the sum of the motions
- * stays within what noise makes of it, the camera stands still. A pan of some thousandths of a pixel a frame ends
- * that. */
-static void hold_still(L1L2ModelSelection *l, L1L2Mat *F, double expected, const L1L2TrackWeights *v)
+/* Holds a camera on a tripod still: small errors of many frames would add up to a drift. The camera counts as standing
+ * still while the decaying sum of its motions stays within what noise makes of it. A pan of a few thousandths of a pixel
+ * per frame ends that. */
+static void hold_still(L1L2ModelSelection *s, const L1L2TrackWeights *w, L1L2Mat *F, double error)
 {
+    const L1L2MotionParameters *p = s->parameters;
     const L1L2Mat identity = l1l2_mat_identity();
     L1L2Mat sum = identity;
     for (int i = 0; i < 6; i++) {
-        l->still.sum[i] = still_memory * l->still.sum[i] + F->m[i] - identity.m[i];
-        sum.m[i] += l->still.sum[i];
+        s->still.sum[i] = p->still_memory * s->still.sum[i] + F->m[i] - identity.m[i];
+        sum.m[i] += s->still.sum[i];
     }
-    l->still.variance = still_memory * l->still.variance + expected * expected;
-    const double moved = l1l2_mat_corner_distance(&sum, &identity, v->half_w, v->half_h);
-    if (moved > still_errors * sqrt(l->still.variance))
-        memset(&l->still, 0, sizeof l->still);
-    else if (++l->still.frames >= still_frames)
+    s->still.variance = p->still_memory * s->still.variance + error * error;
+    const double moved = l1l2_mat_corner_distance(&sum, &identity, w->half_w, w->half_h);
+    if (moved > p->still_significance * sqrt(s->still.variance))
+        memset(&s->still, 0, sizeof s->still);
+    else if (++s->still.frames >= p->still_frames)
         *F = identity;
 }
 
-/* Does the rung bear? */
-static bool stands(const L1L2ModelSelection *l, L1L2StabMotionModel rung, const L1L2TrackWeights *v,
-                   const L1L2Pair *pairs, int count, const bool *inlier, const L1L2SelectedModel *r)
+static L1L2StabMotionSource source_of(L1L2StabMotionModel model)
 {
-    if (rung == L1L2STAB_MOTION_MODEL_TRANSLATION) {
-        return r->inliers >= min_inliers_translation && r->inliers >= min_share_fallback * count &&
-               spread(&r->F, pairs, inlier, count) <= max_spread * wider * l->threshold;
+    switch (model) {
+    case L1L2STAB_MOTION_MODEL_TRANSLATION:
+        return L1L2STAB_MOTION_SOURCE_TRANSLATION;
+    case L1L2STAB_MOTION_MODEL_AFFINE:
+        return L1L2STAB_MOTION_SOURCE_AFFINE;
+    default:
+        return L1L2STAB_MOTION_SOURCE_SIMILARITY;
     }
-    return r->inliers >= min_inliers && r->inliers >= min_inlier_share * count && plausible(&r->F) &&
-           (rung == L1L2STAB_MOTION_MODEL_SIMILARITY ||
-            l1l2_fit_coverage(v->half_w, v->half_h, pairs, inlier, count) >= full_coverage);
 }
 
-/* A rung above the last one waits until it has borne for some frames. */
-static bool may_rise(L1L2ModelSelection *l, L1L2StabMotionModel rung, int inliers)
+L1L2SelectedModel l1l2_motion_model_select(L1L2ModelSelection *s, const L1L2TrackWeights *w,
+                                           const L1L2TrackSet *tracks, bool reselected, bool *inlier, bool *core)
 {
-    if (rung <= l->rung || inliers >= plenty * min_inliers || ++l->waiting >= good_frames) {
-        l->waiting = 0;
-        return true;
-    }
-    return false;
+    Candidate c = {.inliers = 0};
+    bool ambiguous = false;
+    memset(core, false, (size_t)tracks->count * sizeof *core);
+    const bool found = choose_candidate(s, w, tracks, &c);
+    memcpy(inlier, c.inlier, (size_t)tracks->count * sizeof *inlier);
+    L1L2SelectedModel selected = {.source = L1L2STAB_MOTION_SOURCE_NONE, .F = c.F, .inliers = c.inliers};
+    if (!found)
+        return selected;
+    selected.quality = find_quality(s, w, tracks, &c, &ambiguous);
+    s->agreement = reselected ? selected.quality : fmin(selected.quality, s->agreement);
+    selected.quality = s->agreement;
+    if (ambiguous)
+        return selected;
+    selected.source = source_of(c.model);
+    if (c.by_rows || c.model == L1L2STAB_MOTION_MODEL_TRANSLATION)
+        memcpy(core, inlier, (size_t)tracks->count * sizeof *core);
+    else
+        find_core(s, tracks, &c, core, &selected.F);
+    const double error = standard_error(s, w, tracks, &c, &selected.F);
+    selected.quality /= 1.0 + fmax(0.0, error / s->threshold - s->parameters->negligible_error);
+    selected.F = shrink_to_significant(s, w, &selected.F, error);
+    hold_still(s, w, &selected.F, error);
+    s->current = c.model;
+    s->last = selected.F;
+    s->lost = 0;
+    return selected;
 }
 
-static double votes_of(const double *votes, const bool *inlier, int count)
+L1L2SelectedModel l1l2_motion_model_adopt(L1L2ModelSelection *s, const L1L2Mat *F, int inliers, double quality)
 {
-    double sum = 0.0;
-    for (int i = 0; i < count; i++)
-        sum += !inlier || inlier[i] ? votes[i] : 0.0;
-    return sum;
-}
-
-/* The motion of the pairs that `of` names. agreeing: `count` flags out. Returns how many agree. */
-static int motion_among(L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2PairWeights say, const bool *of,
-                        int count, double threshold, L1L2Rng *rng, bool *agreeing, L1L2Mat *F)
-{
-    L1L2Pair some[L1L2_RANSAC_MAX_PAIRS] = {0};
-    double votes[L1L2_RANSAC_MAX_PAIRS], weights[L1L2_RANSAC_MAX_PAIRS];
-    bool inlier[L1L2_RANSAC_MAX_PAIRS];
-    int n = 0;
-    for (int i = 0; i < count; i++)
-        if (of[i])
-            some[n] = pairs[i], votes[n] = say.votes[i], weights[n++] = say.weights[i];
-    const int inliers = l1l2_ransac(model, some, (L1L2PairWeights){votes, weights}, n, threshold, rng, inlier, F);
-    for (int i = 0, k = 0; i < count; i++)
-        agreeing[i] = of[i] && inlier[k++];
-    return inliers;
-}
-
-/* The best motion among those that do not agree with F. rival: `count` flags out. Returns how far it is from F where it
- * is measured: 0 where there is none or it is the same, 1 for another thing altogether. */
-static double find_rival(const L1L2ModelSelection *l, const L1L2Mat *F, const L1L2Pair *pairs, L1L2PairWeights say,
-                         const bool *inlier, int count, L1L2Rng *rng, bool *rival)
-{
-    bool outlier[L1L2_RANSAC_MAX_PAIRS] = {false};
-    L1L2Mat G;
-    for (int i = 0; i < count; i++)
-        outlier[i] = !inlier[i];
-    const int inliers = motion_among(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, say, outlier, count, l->threshold, rng,
-                                     rival, &G);
-    if (inliers < min_rival_inliers || spread(&G, pairs, rival, count) > max_spread * l->threshold)
-        return 0.0;
-    return fmin(1.0, spread(F, pairs, rival, count) / (far_apart * l->threshold));
-}
-
-static double quality(const L1L2ModelSelection *l, const L1L2TrackWeights *v, const L1L2Mat *F, const L1L2Pair *pairs,
-                      L1L2PairWeights say, int count, L1L2Rng *rng, const bool *inlier, bool *ambiguous)
-{
-    double standing[L1L2_RANSAC_MAX_PAIRS]; /* the votes without memory: it would confirm itself */
-    bool rival[L1L2_RANSAC_MAX_PAIRS] = {false};
-    double least = 1.0;
-    const double mine = votes_of(say.votes, inlier, count), all = votes_of(say.votes, NULL, count);
-    double apart = 0.0;
-    if (all - mine >= min_rival_share * all)
-        apart = find_rival(l, F, pairs, say, inlier, count, rng, rival);
-    for (int i = 0; i < count; i++)
-        standing[i] = say.votes[i] / say.weights[i];
-    for (int memory = 1; memory >= 0; memory--) {
-        const double *votes = memory ? say.votes : standing;
-        const double agreed = votes_of(votes, inlier, count), opposed = apart * votes_of(votes, rival, count);
-        least = fmin(least, agreed / votes_of(votes, NULL, count) * fmax(0.0, 1.0 - opposed / agreed));
-        if (memory)
-            *ambiguous = least < min_quality;
-    }
-    return least * fmin(1.0, l1l2_fit_coverage(v->half_w, v->half_h, pairs, inlier, count) / full_coverage);
-}
-
-/* The inliers may be of two motions, each of which agrees far better than the threshold asks: a background, and a
- * subject that moves slowly or another surface. Then F is the first one's alone. Where depth is continuous it is not
- * so, and F is the mean of all. core: of `count`, to whom F was fitted. */
-static void sharpen(const L1L2ModelSelection *l, L1L2StabMotionModel model, const L1L2Pair *pairs, L1L2PairWeights say,
-                    int count, L1L2Rng *rng, const bool *inlier, bool *core, L1L2Mat *F)
-{
-    bool first[L1L2_RANSAC_MAX_PAIRS], second[L1L2_RANSAC_MAX_PAIRS], rest[L1L2_RANSAC_MAX_PAIRS] = {false};
-    L1L2Mat sharp, other;
-    memcpy(core, inlier, (size_t)count * sizeof *core);
-    const double all = votes_of(say.votes, inlier, count);
-    const double tight = sharper * l->threshold;
-    motion_among(model, pairs, say, inlier, count, tight, rng, first, &sharp);
-    const double firsts = votes_of(say.votes, first, count);
-    if (firsts < min_core * all || firsts > all - min_rest * all)
-        return;
-    for (int i = 0; i < count; i++)
-        rest[i] = inlier[i] && !first[i];
-    motion_among(model, pairs, say, rest, count, tight, rng, second, &other);
-    if (votes_of(say.votes, second, count) < min_second * (all - firsts) ||
-        spread(&sharp, pairs, second, count) < min_apart * l->threshold)
-        return;
-    memcpy(core, first, (size_t)count * sizeof *core);
-    *F = sharp;
-}
-
-static const L1L2StabMotionSource model_of[] = {L1L2STAB_MOTION_SOURCE_TRANSLATION, L1L2STAB_MOTION_SOURCE_SIMILARITY,
-                                                L1L2STAB_MOTION_SOURCE_AFFINE};
-
-L1L2SelectedModel l1l2_motion_model_select(L1L2ModelSelection *l, const L1L2TrackWeights *v, const L1L2Pair *pairs,
-                                           L1L2PairWeights say, int count, bool selected, L1L2Rng *rng, bool *inlier,
-                                           bool *core)
-{
-    L1L2SelectedModel r = {.model = L1L2STAB_MOTION_SOURCE_NONE, .F = l1l2_mat_identity()};
-    memset(core, false, (size_t)count * sizeof *core);
-    for (int rung = (int)l->wanted; rung >= L1L2STAB_MOTION_MODEL_TRANSLATION; rung--) {
-        const L1L2StabMotionModel model = (L1L2StabMotionModel)rung;
-        const double threshold = (rung == L1L2STAB_MOTION_MODEL_TRANSLATION ? wider : 1.0) * l->threshold;
-        int in_rows = 0;
-        r.inliers = l1l2_ransac(model, pairs, say, count, threshold, rng, inlier, &r.F);
-        if (rung == L1L2STAB_MOTION_MODEL_SIMILARITY && r.inliers < most_agree * count) {
-            const L1L2ShutterRowTracks tracks = {pairs, say.votes, count, v->half_h, threshold, NULL};
-            in_rows = l1l2_shutter_similarity_by_rows(&tracks, inlier, &r.F);
-            r.inliers = in_rows > 0 ? in_rows : r.inliers;
-        }
-        if (!stands(l, model, v, pairs, count, inlier, &r) || !may_rise(l, model, r.inliers))
-            continue;
-        bool ambiguous;
-        r.quality = quality(l, v, &r.F, pairs, say, count, rng, inlier, &ambiguous);
-        l->agreed = selected ? r.quality : fmin(r.quality, l->agreed);
-        r.quality = l->agreed;
-        if (ambiguous)
-            break;
-        r.model = model_of[rung];
-        if (in_rows > 0 || rung == L1L2STAB_MOTION_MODEL_TRANSLATION)
-            memcpy(core, inlier, (size_t)count * sizeof *core);
-        else
-            sharpen(l, model, pairs, say, count, rng, inlier, core, &r.F);
-        const double error = expected_error(l, v, &r, pairs, inlier, count);
-        r.quality /= 1.0 + fmax(0.0, error / l->threshold - clear_error);
-        r.F = significant_part(l, &r.F, error, v);
-        hold_still(l, &r.F, error, v);
-        l->rung = model;
-        l->last = r.F;
-        l->lost = 0;
-        break;
-    }
-    return r;
-}
-
-L1L2SelectedModel l1l2_motion_model_adopt(L1L2ModelSelection *l, const L1L2Mat *F, int inliers, double quality)
-{
-    l->rung = L1L2STAB_MOTION_MODEL_SIMILARITY;
-    l->waiting = l->lost = 0;
-    l->last = *F;
+    s->current = L1L2STAB_MOTION_MODEL_SIMILARITY;
+    s->acceptable_frames = s->lost = 0;
+    s->last = *F;
     return (L1L2SelectedModel){
-        .model = L1L2STAB_MOTION_SOURCE_SIMILARITY, .F = *F, .inliers = inliers, .quality = quality};
+        .source = L1L2STAB_MOTION_SOURCE_SIMILARITY, .F = *F, .inliers = inliers, .quality = quality};
 }
 
-L1L2SelectedModel l1l2_motion_model_predict(L1L2ModelSelection *l)
+L1L2SelectedModel l1l2_motion_model_predict(L1L2ModelSelection *s)
 {
-    l->lost++;
-    l->rung = l->wanted;
-    l->waiting = 0;
-    memset(&l->still, 0, sizeof l->still);
+    s->lost++;
+    s->current = s->highest;
+    s->acceptable_frames = 0;
+    memset(&s->still, 0, sizeof s->still);
     for (int i = 0; i < 9; i++) {
         const double identity = i % 4 == 0 ? 1.0 : 0.0;
-        l->last.m[i] = identity + prediction_fade * (l->last.m[i] - identity);
+        s->last.m[i] = identity + s->parameters->prediction_fade * (s->last.m[i] - identity);
     }
-    const bool fading = l->lost <= max_predicted;
-    return (L1L2SelectedModel){.model = fading ? L1L2STAB_MOTION_SOURCE_PREDICTED : L1L2STAB_MOTION_SOURCE_IDENTITY,
-                      .F = fading ? l->last : l1l2_mat_identity()};
+    const bool predicted = s->lost <= s->parameters->max_predicted_frames;
+    return (L1L2SelectedModel){
+        .source = predicted ? L1L2STAB_MOTION_SOURCE_PREDICTED : L1L2STAB_MOTION_SOURCE_IDENTITY,
+        .F = predicted ? s->last : l1l2_mat_identity()};
 }

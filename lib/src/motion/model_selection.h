@@ -1,56 +1,60 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Step 2: the model of the motion into a frame, from the highest rung that the tracks can bear
+ * Algorithm 1, step 2: which model of the motion into a frame the tracks support
  *
- *   affine (where it is asked for) -> similarity -> translation -> predicted -> identity
+ *   affine (if configured) -> similarity -> translation -> predicted -> identity
  *
- * A rung has gates: what a camera does from one frame to the next, and enough tracks that agree. Down is at once; up
- * again takes plenty of tracks or three good frames in a row, so that the model does not flip from frame to frame.
+ * The highest model that passes its acceptance tests is selected: it has to be a motion that a camera makes from one
+ * frame to the next, with enough inliers. A lower model is taken at once. A higher one is taken again if it has many
+ * inliers, after three acceptable frames in a row, or if no lower one is acceptable, so that the model does not change
+ * from frame to frame.
  *
- * Quality, [0, 1]: the part of the votes that agree; less where another motion has many votes too, and where they cover
- * little of the frame. Where two motions have about as many votes, neither is followed.
+ * Quality, [0, 1]: the part of the consensus weight that agrees. It is less if another motion has much weight too, if
+ * the inliers cover little of the frame, and if the tracks are noisy. If two motions have about equal weight, neither
+ * is followed.
  */
 #ifndef L1L2_MOTION_MODEL_SELECTION_H
 #define L1L2_MOTION_MODEL_SELECTION_H
 
-#include "fit/ransac.h"
+#include <l1l2stab/l1l2stab.h>
+
 #include "motion/track_weights.h"
 
 typedef struct L1L2ModelSelection {
-    L1L2StabMotionModel wanted; /* the highest rung: similarity or affine */
-    double threshold;           /* of the inliers, in the pairs' unit */
-    L1L2StabMotionModel rung;   /* that was borne last */
-    int waiting;                /* frames in a row that a higher one was */
-    L1L2Mat last;               /* the last measured motion, fading while it is predicted from */
-    int lost;                   /* frames since then */
-    struct {                    /* a camera that stands still, as far as can be told */
-        int frames;             /* so long */
-        double sum[6];          /* of F less the identity, fading */
-        double variance;        /* that noise has given it, at the corners */
+    const L1L2MotionParameters *parameters;
+    L1L2StabMotionModel highest; /* that is fitted: similarity or affine */
+    double threshold;            /* of the inliers, in the pairs' unit */
+    L1L2StabMotionModel current; /* selected last */
+    int acceptable_frames;       /* in a row, in which a higher model than the current one was acceptable */
+    L1L2Mat last;                /* the last measured motion, decaying while it is used as the prediction */
+    int lost;                    /* frames since then */
+    struct {                     /* of a camera that may be standing still */
+        int frames;              /* without significant motion */
+        double sum[6];           /* of F less the identity, decaying */
+        double variance;         /* of the corners under that sum, expected from noise */
     } still;
-    double agreed;              /* quality when points were chosen last: after that, only those that agree are left */
+    double agreement;            /* lowest quality since corners were selected: outliers are dropped after each frame */
 } L1L2ModelSelection;
 
 typedef struct L1L2SelectedModel {
-    L1L2StabMotionSource model; /* NONE: nothing was measured */
+    L1L2StabMotionSource source; /* NONE: nothing was measured */
     L1L2Mat F;
     int inliers;
-    double quality;      /* [0, 1] */
+    double quality;              /* [0, 1] */
 } L1L2SelectedModel;
 
-/* A path starts: the motion before it means nothing. */
-void l1l2_motion_model_reset(L1L2ModelSelection *l);
+/* Forgets the motion and the model: a path starts. */
+void l1l2_motion_model_reset(L1L2ModelSelection *s);
 
-/* selected: points were chosen anew for this frame. inlier, core: `count` flags out; of the inliers, the core is what F
- * was fitted to. */
-L1L2SelectedModel l1l2_motion_model_select(L1L2ModelSelection *l, const L1L2TrackWeights *v, const L1L2Pair *pairs,
-                                           L1L2PairWeights say, int count, bool selected, L1L2Rng *rng, bool *inlier,
-                                           bool *core);
+/* Selects a model for the tracks of a frame. tracks->threshold: ours. reselected: new corners were selected for this
+ * frame. inlier, core: tracks->count flags each, written. The core are the inliers to which F was fitted. */
+L1L2SelectedModel l1l2_motion_model_select(L1L2ModelSelection *s, const L1L2TrackWeights *w,
+                                           const L1L2TrackSet *tracks, bool reselected, bool *inlier, bool *core);
 
-/* A similarity that was found otherwise. */
-L1L2SelectedModel l1l2_motion_model_adopt(L1L2ModelSelection *l, const L1L2Mat *F, int inliers, double quality);
+/* Selects a similarity that was found by other means. */
+L1L2SelectedModel l1l2_motion_model_adopt(L1L2ModelSelection *s, const L1L2Mat *F, int inliers, double quality);
 
-/* The motion where nothing was measured: the one before it, fading, and then none. */
-L1L2SelectedModel l1l2_motion_model_predict(L1L2ModelSelection *l);
+/* The motion of a frame in which nothing was measured: the last one, decaying, and after a while the identity. */
+L1L2SelectedModel l1l2_motion_model_predict(L1L2ModelSelection *s);
 
 #endif

@@ -7,47 +7,67 @@
 #include "common/clock.h"
 #include "common/log.h"
 #include "common/mem.h"
+#include "fit/ransac.h"
 #include "motion/model_selection.h"
+#include "motion/shot_cut.h"
 #include "motion/shot_dissolve.h"
 #include "motion/static_overlay.h"
 #include "motion/vision.h"
 #include "rolling_shutter/camera_gate.h"
 #include "rolling_shutter/fit.h"
 
-/* On ten real clips 150 points are as good, 250 no better; on synthetic ones the median error is 0.016 px at 720p. */
-enum { MAX_POINTS = 200, FEW_POINTS = MAX_POINTS / 2, RESELECT_FRAMES = 10 /* paper, section 4.3 */ };
-
-/* All in pixels of the tracked picture. The minimum distance spreads the points (paper, section 4.3); pictures so small
- * that MAX_POINTS would not fit get less, down to 3. At 20 px, low-contrast frames have too few points. */
-static const double max_distance_px = 12.0, min_distance_px = 3.0;
-/* The backward check. */
-static const double max_return_px = 0.5;
-/* Parallax makes 1 px flicker between surfaces; at 2 px, slow things that move by themselves are let in. */
-static const double inlier_px = 1.5;
+enum { MAX_POINTS = L1L2_RANSAC_MAX_PAIRS };
 
 struct L1L2Motion {
     L1L2MotionConfig cfg;
     L1L2Vision *vision;
-    int width, height;      /* of the tracked picture */
+    int width, height;      /* of the downscaled picture */
     double diagonal_px;     /* of the frame */
-    double distance_px;     /* between points */
-    L1L2Rng rng;
-    L1L2Pixel point[MAX_POINTS], moved[MAX_POINTS];
-    int age[MAX_POINTS];    /* frames that a point has moved with the camera */
+    double half_w, half_h;  /* of the frame, in diagonals */
+    double distance_px;     /* between points, in the downscaled picture */
+    L1L2ShutterModel shape; /* of the rolling-shutter residual */
+
+    /* The tracks: [0, points) of each array. */
+    int points;
+    L1L2Pixel point[MAX_POINTS], moved[MAX_POINTS]; /* in the previous picture; in the current one */
+    int age[MAX_POINTS];                            /* frames for which the track has followed the camera */
     L1L2Pair pair[MAX_POINTS];
-    double votes[MAX_POINTS], weights[MAX_POINTS];
-    bool ok[MAX_POINTS], inlier[MAX_POINTS], core[MAX_POINTS];
-    int points;             /* in `point`, in the current picture */
-    int since_selection;    /* frames */
-    L1L2ShutterModel shape; /* of what F leaves, if that is fitted */
-    L1L2TrackWeights voters;
-    L1L2ModelSelection ladder;
-    L1L2StaticOverlay overlay;
-    L1L2ShotDissolve dissolve;
-    L1L2ShutterGate cause;        /* of what F leaves */
+    bool ok[MAX_POINTS];                            /* it was found in the current picture */
+    double consensus_weights[MAX_POINTS], fit_weights[MAX_POINTS];
+    bool inlier[MAX_POINTS], core[MAX_POINTS];      /* of the selected model, and to which it was fitted */
+    int since_selection;                            /* frames, of corners */
+
+    bool has_previous;        /* a picture was pushed since the last reset */
+    L1L2Rng rng;
     L1L2Thumbnail thumbnail;  /* of the current picture */
-    L1L2ShotCut shot;
+    L1L2TrackWeights weights;
+    L1L2ModelSelection selection;
+    L1L2StaticOverlay overlay;
+    L1L2ShotCut cut;
+    L1L2ShotDissolve dissolve;
+    L1L2ShutterGate gate;     /* which of the residuals follow the camera's motion */
 };
+
+static void configure(L1L2Motion *m)
+{
+    const L1L2MotionParameters *p = m->cfg.parameters;
+    const double pixel = 1.0 / hypot(m->width, m->height);
+    m->diagonal_px = hypot(m->cfg.width, m->cfg.height);
+    m->half_w = 0.5 * m->cfg.width / m->diagonal_px;
+    m->half_h = 0.5 * m->cfg.height / m->diagonal_px;
+    m->shape = (L1L2ShutterModel){m->cfg.rolling_shutter, m->half_w, m->half_h, NULL};
+    m->weights = (L1L2TrackWeights){.parameters = p, .half_w = m->half_w, .half_h = m->half_h};
+    m->overlay = (L1L2StaticOverlay){.parameters = p, .half_w = m->half_w, .half_h = m->half_h, .pixel = pixel};
+    m->dissolve.parameters = p;
+    /* A similarity measures the translation of the whole picture best: where the camera rolls, a translation alone would
+     * fit one part of the picture in one frame and another part in the next. The result is reduced in the end. */
+    const bool translation = m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION;
+    m->selection = (L1L2ModelSelection){.parameters = p,
+                                        .highest = translation ? L1L2STAB_MOTION_MODEL_SIMILARITY : m->cfg.model,
+                                        .threshold = p->inlier_distance * pixel};
+    const double grid_px = sqrt((double)m->width * m->height / p->max_points);
+    m->distance_px = fmin(fmax(p->point_grid * grid_px, p->min_point_distance), p->point_distance);
+}
 
 L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
 {
@@ -56,11 +76,14 @@ L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
     if (!m)
         return L1L2STAB_ERR_NOMEM;
     m->cfg = *cfg;
+    if (!m->cfg.parameters)
+        m->cfg.parameters = &l1l2_motion_defaults;
     const L1L2VisionConfig vision = {
         .format = cfg->format,
         .width = cfg->width,
         .height = cfg->height,
         .analysis_size = cfg->analysis_size,
+        .parameters = m->cfg.parameters,
         .log = cfg->log,
     };
     const L1L2StabResult result = l1l2_vision_create(&m->vision, &vision);
@@ -69,20 +92,7 @@ L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
         return result;
     }
     l1l2_vision_size(m->vision, &m->width, &m->height);
-    m->diagonal_px = hypot(cfg->width, cfg->height);
-    const double half_w = 0.5 * cfg->width / m->diagonal_px, half_h = 0.5 * cfg->height / m->diagonal_px;
-    const double pixel = 1.0 / hypot(m->width, m->height);
-    m->shape = (L1L2ShutterModel){cfg->rolling_shutter, half_w, half_h, NULL};
-    m->voters = (L1L2TrackWeights){.half_w = half_w, .half_h = half_h};
-    m->overlay = (L1L2StaticOverlay){.half_w = half_w, .half_h = half_h, .pixel = pixel};
-    /* Where the picture moves as a whole is best told by a similarity: of a picture that turns, translations agree with
-     * one part now and with another then. */
-    const bool translation = cfg->model == L1L2STAB_MOTION_MODEL_TRANSLATION;
-    m->ladder = (L1L2ModelSelection){.wanted = translation ? L1L2STAB_MOTION_MODEL_SIMILARITY : cfg->model,
-                             .threshold = inlier_px * pixel};
-    /* 0.4 of the distance of as many points on a square grid. */
-    m->distance_px = fmax(0.4 * sqrt((double)m->width * m->height / MAX_POINTS), min_distance_px);
-    m->distance_px = fmin(m->distance_px, max_distance_px);
+    configure(m);
     l1l2_motion_reset(m);
     *out = m;
     return L1L2STAB_OK;
@@ -96,52 +106,56 @@ void l1l2_motion_free(L1L2Motion *m)
     l1l2_mem_free(m);
 }
 
-static void start_path(L1L2Motion *m)
-{
-    m->points = 0;
-    m->since_selection = RESELECT_FRAMES;
-    l1l2_motion_cut_start(&m->shot, &m->thumbnail);
-    l1l2_motion_weights_reset(&m->voters);
-    l1l2_motion_model_reset(&m->ladder);
-    l1l2_motion_dissolve_start(&m->dissolve, &m->thumbnail);
-    l1l2_shutter_gate_break(&m->cause);
-}
-
 void l1l2_motion_reset(L1L2Motion *m)
 {
     l1l2_vision_reset(m->vision);
+    m->has_previous = false;
     m->rng = l1l2_rng_seeded(m->cfg.seed);
     l1l2_motion_overlay_reset(&m->overlay);
-    memset(&m->cause, 0, sizeof m->cause);
-    start_path(m);
+    memset(&m->gate, 0, sizeof m->gate);
 }
 
-/* From the tracked picture's pixels, whose centres are integers, to diagonals from the frame's centre. The two axes
- * have scales of their own, since the tracked picture's sides are rounded. */
+/* The current picture is the first of a shot, or the first after a reset. */
+static void start_shot(L1L2Motion *m)
+{
+    m->points = 0;
+    m->since_selection = (int)m->cfg.parameters->reselect_frames;
+    l1l2_motion_cut_start(&m->cut, &m->thumbnail);
+    l1l2_motion_dissolve_start(&m->dissolve, &m->thumbnail);
+    l1l2_motion_weights_reset(&m->weights);
+    l1l2_motion_model_reset(&m->selection);
+    l1l2_shutter_gate_break(&m->gate);
+}
+
+/* ---- Step 1: features and tracks ---- */
+
+/* From the downscaled picture's pixels, whose centers are integers, to diagonals from the frame's center. The two axes
+ * have different scales, since the downscaled picture's sides are rounded. */
 static L1L2Point to_diagonals(const L1L2Motion *m, L1L2Pixel p)
 {
     return (L1L2Point){((p.x + 0.5) * m->cfg.width / m->width - 0.5 * m->cfg.width) / m->diagonal_px,
                        ((p.y + 0.5) * m->cfg.height / m->height - 0.5 * m->cfg.height) / m->diagonal_px};
 }
 
-/* New points where due: not where something stands still. */
-static L1L2StabResult select_points(L1L2Motion *m)
+/* Selects new corners if that is due, where there is no static overlay. */
+static L1L2StabResult select_corners(L1L2Motion *m)
 {
-    if (m->since_selection++ < RESELECT_FRAMES && m->points >= FEW_POINTS)
+    const L1L2MotionParameters *p = m->cfg.parameters;
+    if (m->since_selection++ < p->reselect_frames && m->points >= p->min_points_share * p->max_points)
         return L1L2STAB_OK;
     L1L2Mask mask;
     int found;
     l1l2_motion_overlay_mask(&m->overlay, &mask);
     const L1L2StabResult result =
         l1l2_vision_corners(m->vision, m->point, m->points, &mask, m->distance_px, m->point + m->points,
-                            MAX_POINTS - m->points, &found);
+                            (int)p->max_points - m->points, &found);
     memset(m->age + m->points, 0, (size_t)found * sizeof *m->age);
     m->points += found;
     m->since_selection = 1;
     return result;
 }
 
-static void keep(L1L2Motion *m, int i, int *kept)
+static void keep_track(L1L2Motion *m, int i, int *kept)
 {
     m->point[*kept] = m->point[i];
     m->age[*kept] = m->age[i];
@@ -149,12 +163,11 @@ static void keep(L1L2Motion *m, int i, int *kept)
     ++*kept;
 }
 
-/* Step 1: the points of the previous picture, followed into the current one. */
-static L1L2StabResult track(L1L2Motion *m)
+/* Tracks the points of the previous picture into the current one. */
+static L1L2StabResult track_points(L1L2Motion *m)
 {
-    L1L2StabResult result = select_points(m);
-    if (result == L1L2STAB_OK)
-        result = l1l2_vision_track(m->vision, m->point, m->moved, m->ok, m->points, max_return_px);
+    const L1L2StabResult result = l1l2_vision_track(m->vision, m->point, m->moved, m->ok, m->points,
+                                                    m->cfg.parameters->max_return_distance);
     if (result != L1L2STAB_OK)
         return result;
     int kept = 0;
@@ -162,163 +175,229 @@ static L1L2StabResult track(L1L2Motion *m)
         m->pair[i] = (L1L2Pair){to_diagonals(m, m->moved[i]), to_diagonals(m, m->point[i])};
         m->point[i] = m->moved[i];
         if (m->ok[i] && !l1l2_motion_overlay_covers(&m->overlay, m->pair[i].from))
-            keep(m, i, &kept);
+            keep_track(m, i, &kept);
     }
     m->points = kept;
     return L1L2STAB_OK;
 }
 
-/* What is learned from a measured motion. Outliers go: on something that moves by itself, or drifting. If they stayed,
- * an object that covers a third of the frame would now and then be taken for the background. */
+/* ---- Step 2: the motion ---- */
+
+static L1L2TrackSet weigh_tracks(L1L2Motion *m)
+{
+    l1l2_motion_weights_assign(&m->weights, m->pair, m->age, m->points, m->consensus_weights, m->fit_weights);
+    return (L1L2TrackSet){
+        .pairs = m->pair,
+        .consensus_weights = m->consensus_weights,
+        .fit_weights = m->fit_weights,
+        .count = m->points,
+        .threshold = m->selection.threshold,
+        .rng = &m->rng,
+    };
+}
+
+/* Learns from a measured motion, and drops the outliers: they are on subjects, or drift. If they were kept, a subject
+ * that covers a third of the frame would be taken for the background now and then. */
 static void learn(L1L2Motion *m, const L1L2Mat *F)
 {
-    l1l2_motion_weights_learn(&m->voters, m->pair, m->core, m->points);
+    l1l2_motion_weights_learn(&m->weights, m->pair, m->core, m->points);
     l1l2_motion_overlay_learn(&m->overlay, m->pair, m->inlier, m->points, F);
     int kept = 0;
     for (int i = 0; i < m->points; i++) {
         m->age[i] = m->core[i] ? m->age[i] + 1 : 0;
         if (m->inlier[i])
-            keep(m, i, &kept);
+            keep_track(m, i, &kept);
     }
     m->points = kept;
 }
 
-static void start_shot(L1L2Motion *m, L1L2MotionResult *out, const char *how)
+/* ---- Step 4, as far as it concerns two frames: the rolling-shutter residual ---- */
+
+/* A residual's fit, and the similarity that it starts from. */
+typedef struct ResidualFit {
+    bool wide;                /* no similarity was selected: it starts from one with a wide threshold */
+    L1L2Mat F;
+    bool similar[MAX_POINTS]; /* tracks that agree with F */
+    int count;                /* of the tracks that the residual is fitted to */
+    int track[MAX_POINTS];    /* which those are */
+    bool inlier[MAX_POINTS];  /* which of those agree with the fit */
+    int inliers;              /* their number, 0: there is no fit */
+    L1L2ShutterMeasurement step;
+} ResidualFit;
+
+/* Where rows move so differently that no similarity is selected, one with a wide threshold is good enough to begin with.
+ * It takes its random numbers from a copy, so that the next frame has the same with and without step 4. */
+static bool find_wide_similarity(const L1L2Motion *m, const L1L2TrackSet *tracks, ResidualFit *fit)
 {
-    l1l2_log(m->cfg.log, L1L2STAB_LOG_DEBUG, "motion: %s", how);
-    *out = (L1L2MotionResult){.F = l1l2_mat_identity(), .scale_ns = out->scale_ns, .track_ns = out->track_ns};
-    start_path(m);
+    const L1L2MotionParameters *p = m->cfg.parameters;
+    L1L2Rng rng = m->rng;
+    L1L2TrackSet wide = *tracks;
+    wide.threshold *= p->wide_threshold;
+    wide.rng = &rng;
+    return l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, &wide, fit->similar, &fit->F) >=
+           p->wide_min_share * tracks->count;
 }
 
-/* Whose motion may bend the picture: not where something moved by itself lately, however slowly. */
-static int trusted(const L1L2Motion *m, const bool *agrees, L1L2Pair *pairs, bool *agreeing, int *from)
+/* Fits the residual to the tracks, except where subjects moved lately, however slowly. */
+static bool fit_residual(const L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2SelectedModel *selected,
+                         ResidualFit *fit)
 {
-    const double least_trust = 0.8;
-    int n = 0;
-    for (int i = 0; i < m->points; i++)
-        if (l1l2_motion_weights_trust(&m->voters, m->pair[i].from) >= least_trust) {
-            pairs[n] = m->pair[i];
-            agreeing[n] = agrees[i];
-            from[n++] = i;
+    L1L2Pair pairs[MAX_POINTS] = {0};
+    fit->wide = selected->source < L1L2STAB_MOTION_SOURCE_SIMILARITY;
+    fit->F = selected->F;
+    fit->count = fit->inliers = 0;
+    memcpy(fit->similar, m->core, sizeof fit->similar);
+    if (fit->wide && !find_wide_similarity(m, tracks, fit))
+        return false;
+    for (int i = 0; i < tracks->count; i++)
+        if (l1l2_motion_weights_agreement(&m->weights, tracks->pairs[i].from) >=
+            m->cfg.parameters->residual_min_agreement) {
+            pairs[fit->count] = tracks->pairs[i];
+            fit->inlier[fit->count] = fit->similar[i];
+            fit->track[fit->count++] = i;
         }
-    return n;
+    fit->inliers = l1l2_shutter_fit(&m->shape, pairs, fit->count, tracks->threshold, fit->inlier, &fit->F, &fit->step);
+    return fit->inliers > 0;
 }
 
-/* Each part of the points, in whatever way they are divided, by the others. A shutter alone explains 97 %; parallax and
- * slow movers up to 77 %, of which the camera's motion tells one from the other. */
-static bool explains_all(const L1L2Motion *m, const L1L2ShutterMeasurement *step)
+/* True if the fit explains each part of the tracks that it was not fitted to, in all splits. Less is required if the
+ * camera's motion predicts the residuals, which tells a rolling shutter from parallax and slow subjects. */
+static bool validate_residual(const L1L2Motion *m, const L1L2TrackSet *tracks, const ResidualFit *fit)
 {
-    const double alone = 0.8, caused = 0.5, cause = 0.3;
-    const double enough = l1l2_shutter_gate_share(&m->cause) >= cause ? caused : alone;
-    for (int division = 0; division < L1L2_SPLITS; division++)
-        if (step->explained[division] < enough * step->all[division])
+    const L1L2MotionParameters *p = m->cfg.parameters;
+    const bool by_camera = l1l2_shutter_gate_share(&m->gate) >= p->camera_share;
+    const double required = by_camera ? p->residual_explained_camera : p->residual_explained;
+    for (int split = 0; split < L1L2_SPLITS; split++)
+        if (fit->step.explained[split] < required * fit->step.all[split])
             return false;
+    return !fit->wide || fit->inliers >= p->wide_min_share * tracks->count;
+}
+
+/* Tracks that agree with the validated residual follow the camera, too. If far more tracks agree with similarity and
+ * residual than with the selected model, the similarity nearest to both becomes the frame's motion. */
+static void adopt_residual(L1L2Motion *m, const L1L2TrackSet *tracks, ResidualFit *fit, L1L2SelectedModel *selected)
+{
+    const L1L2MotionParameters *p = m->cfg.parameters;
+    if (fit->wide) { /* also for the tracks that the residual was not fitted to */
+        memcpy(m->inlier, fit->similar, sizeof m->inlier);
+        memcpy(m->core, fit->similar, sizeof m->core);
+    }
+    for (int k = 0; k < fit->count; k++)
+        m->inlier[fit->track[k]] = m->core[fit->track[k]] = fit->inlier[k];
+    const bool better = fit->inliers >= p->adopt_min_share * tracks->count &&
+                        selected->inliers < p->adopt_max_similarity * fit->inliers;
+    if (!fit->wide && !better)
+        return;
+    const L1L2Mat part = l1l2_shutter_residual_extract_similarity(&m->shape, &fit->step.r);
+    for (int i = 0; i < 6; i++)
+        fit->F.m[i] += part.m[i];
+    *selected = l1l2_motion_model_adopt(&m->selection, &fit->F, fit->inliers, (double)fit->inliers / tracks->count);
+}
+
+static void measure_residual(L1L2Motion *m, const L1L2TrackSet *tracks, L1L2SelectedModel *selected,
+                             L1L2MotionResult *out)
+{
+    ResidualFit fit;
+    if (m->shape.kind == L1L2STAB_ROLLING_SHUTTER_NONE || m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION ||
+        !fit_residual(m, tracks, selected, &fit))
+        return;
+    const bool valid = validate_residual(m, tracks, &fit);
+    if (valid)
+        adopt_residual(m, tracks, &fit, selected);
+    out->has_residual = valid || !fit.wide;
+    out->residual = fit.step;
+}
+
+/* ---- One frame ---- */
+
+/* Drops all tracks and predicts the motion. */
+static L1L2SelectedModel predict(L1L2Motion *m, const L1L2SelectedModel *selected)
+{
+    if (m->selection.lost == 0)
+        l1l2_log(m->cfg.log, L1L2STAB_LOG_WARN, "motion: lost, %d of %d tracks agree: predicting", selected->inliers,
+                 m->points);
+    m->points = 0;
+    m->since_selection = (int)m->cfg.parameters->reselect_frames;
+    return l1l2_motion_model_predict(&m->selection);
+}
+
+/* Another shot begins with the current frame. */
+static void cut_to(L1L2Motion *m, const char *what)
+{
+    l1l2_log(m->cfg.log, L1L2STAB_LOG_DEBUG, "motion: %s", what);
+    start_shot(m);
+}
+
+/* From the tracks of a frame to its motion. False: it starts another shot. */
+static bool measure(L1L2Motion *m, L1L2MotionResult *out)
+{
+    const L1L2TrackSet tracks = weigh_tracks(m);
+    const bool reselected = m->since_selection == 1;
+    L1L2SelectedModel selected =
+        l1l2_motion_model_select(&m->selection, &m->weights, &tracks, reselected, m->inlier, m->core);
+    measure_residual(m, &tracks, &selected, out);
+    const bool measured = selected.source != L1L2STAB_MOTION_SOURCE_NONE;
+    if (l1l2_motion_cut_push(&m->cut, &m->thumbnail, measured)) {
+        cut_to(m, "a cut");
+        return false;
+    }
+    if (measured)
+        learn(m, &selected.F);
+    else
+        selected = predict(m, &selected);
+    if (l1l2_motion_dissolve_push(&m->dissolve, &m->thumbnail, &selected.F, m->half_w, m->half_h)) {
+        cut_to(m, "a dissolve");
+        return false;
+    }
+    if (out->has_residual && measured)
+        l1l2_shutter_gate_push(&m->gate, &m->shape, &selected.F, &out->residual);
+    else
+        l1l2_shutter_gate_break(&m->gate);
+    out->F = l1l2_mat_reduce(&selected.F, l1l2_mat_dim(m->cfg.model));
+    out->model = selected.source;
+    if (m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION && out->model == L1L2STAB_MOTION_SOURCE_SIMILARITY)
+        out->model = L1L2STAB_MOTION_SOURCE_TRANSLATION;
+    out->tracks = tracks.count;
+    out->inliers = selected.inliers;
+    out->quality = selected.quality;
     return true;
 }
 
-/* Step 4, as far as it is about two frames. Points that agree with the residual are the camera's too, if all columns
- * tell it alike: a slow subject that was taken in once would never be found out. Where rows move so differently that no
- * similarity is found, a wide one is good enough to begin with, if all comes together in the end. */
-static void fit_residual(L1L2Motion *m, L1L2SelectedModel *rung, L1L2MotionResult *out)
-{
-    const double wide = 3.0, min_share = 0.7, most = 0.85, few = 0.7;
-    L1L2Rng rng = m->rng; /* the next frame has the same as without step 4 */
-    const int count = m->points;
-    const double threshold = m->ladder.threshold;
-    if (m->shape.kind == L1L2STAB_ROLLING_SHUTTER_NONE || m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION)
-        return;
-    const bool found = rung->model >= L1L2STAB_MOTION_SOURCE_SIMILARITY;
-    L1L2Mat F = rung->F;
-    L1L2Pair pairs[MAX_POINTS] = {0};
-    bool agrees[MAX_POINTS], agreeing[MAX_POINTS];
-    int from[MAX_POINTS];
-    memcpy(agrees, m->core, sizeof agrees);
-    if (!found && l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, m->pair, (L1L2PairWeights){m->votes, m->weights}, count,
-                              wide * threshold, &rng, agrees, &F) < min_share * count)
-        return;
-    const int n = trusted(m, agrees, pairs, agreeing, from);
-    const int inliers = l1l2_shutter_fit(&m->shape, pairs, n, threshold, agreeing, &F, &out->residual);
-    const bool adopted = inliers > 0 && (found || inliers >= min_share * count) && explains_all(m, &out->residual);
-    out->has_residual = found ? inliers > 0 : adopted;
-    if (!adopted)
-        return;
-    if (!found) { /* what is not trusted goes by the wide similarity */
-        memcpy(m->inlier, agrees, sizeof agrees);
-        memcpy(m->core, agrees, sizeof agrees);
-    }
-    for (int k = 0; k < n; k++)
-        m->inlier[from[k]] = m->core[from[k]] = agreeing[k];
-    if (!found || (inliers >= most * count && rung->inliers < few * inliers)) {
-        const L1L2Mat rest = l1l2_shutter_residual_extract_similarity(&m->shape, &out->residual.r);
-        for (int i = 0; i < 6; i++)
-            F.m[i] += rest.m[i];
-        *rung = l1l2_motion_model_adopt(&m->ladder, &F, inliers, (double)inliers / count);
-    }
-}
+static const L1L2MotionResult path_start = {
+    .F = {{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}}, .model = L1L2STAB_MOTION_SOURCE_NONE};
 
-static void fit(L1L2Motion *m, L1L2MotionResult *out)
+static L1L2StabResult advance_picture(L1L2Motion *m, const uint8_t *data, ptrdiff_t stride)
 {
-    const int count = m->points;
-    l1l2_motion_weights_assign(&m->voters, m->pair, m->age, count, m->votes, m->weights);
-    const L1L2PairWeights say = {m->votes, m->weights};
-    L1L2SelectedModel rung = l1l2_motion_model_select(&m->ladder, &m->voters, m->pair, say, count,
-                                                      m->since_selection == 1, &m->rng, m->inlier, m->core);
-    fit_residual(m, &rung, out);
-    const bool measured = rung.model != L1L2STAB_MOTION_SOURCE_NONE;
-    if (l1l2_motion_cut_push(&m->shot, &m->thumbnail, measured)) {
-        start_shot(m, out, "a cut");
-        return;
-    }
-    if (measured) {
-        learn(m, &rung.F);
-    } else {
-        if (m->ladder.lost == 0)
-            l1l2_log(m->cfg.log, L1L2STAB_LOG_WARN, "motion: lost, %d of %d points agree: predicting", rung.inliers,
-                     count);
-        m->points = 0;
-        m->since_selection = RESELECT_FRAMES;
-        rung = l1l2_motion_model_predict(&m->ladder);
-    }
-    if (l1l2_motion_dissolve_push(&m->dissolve, &m->thumbnail, &rung.F, m->voters.half_w, m->voters.half_h)) {
-        start_shot(m, out, "a dissolve");
-        return;
-    }
-    if (out->has_residual && measured)
-        l1l2_shutter_gate_push(&m->cause, &m->shape, &rung.F, &out->residual);
-    else
-        l1l2_shutter_gate_break(&m->cause);
-    out->F = l1l2_mat_reduce(&rung.F, l1l2_mat_dim(m->cfg.model));
-    out->model = rung.model;
-    if (m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION && rung.model == L1L2STAB_MOTION_SOURCE_SIMILARITY)
-        out->model = L1L2STAB_MOTION_SOURCE_TRANSLATION;
-    out->tracks = count;
-    out->inliers = rung.inliers;
-    out->quality = rung.quality;
+    const L1L2StabResult result = l1l2_vision_advance(m->vision, data, stride);
+    return result == L1L2STAB_OK ? l1l2_vision_thumbnail(m->vision, &m->thumbnail) : result;
 }
 
 L1L2StabResult l1l2_motion_push(L1L2Motion *m, const uint8_t *data, ptrdiff_t stride, bool starts_path,
                                 L1L2MotionResult *out)
 {
-    *out = (L1L2MotionResult){.F = l1l2_mat_identity(), .model = L1L2STAB_MOTION_SOURCE_NONE};
+    *out = path_start;
     const int64_t start_ns = l1l2_clock_ns();
-    L1L2StabResult result = l1l2_vision_advance(m->vision, data, stride);
-    if (result == L1L2STAB_OK)
-        result = l1l2_vision_thumbnail(m->vision, &m->thumbnail);
+    L1L2StabResult result = advance_picture(m, data, stride);
     const int64_t scaled_ns = l1l2_clock_ns();
-    out->scale_ns = scaled_ns - start_ns;
-    if (result == L1L2STAB_OK && starts_path) {
-        start_path(m);
-        return L1L2STAB_OK;
-    }
-    if (result == L1L2STAB_OK)
-        result = track(m);
-    const int64_t tracked_ns = l1l2_clock_ns();
-    out->track_ns = tracked_ns - scaled_ns;
+    const bool first = starts_path || !m->has_previous;
+    if (result == L1L2STAB_OK && !first)
+        result = select_corners(m);
+    if (result == L1L2STAB_OK && !first)
+        result = track_points(m);
     if (result != L1L2STAB_OK) {
         l1l2_motion_reset(m);
         return result;
     }
-    fit(m, out);
+    m->has_previous = true;
+    const int64_t tracked_ns = l1l2_clock_ns();
+    if (first) {
+        start_shot(m);
+        out->model = starts_path ? L1L2STAB_MOTION_SOURCE_NONE : L1L2STAB_MOTION_SOURCE_IDENTITY;
+    } else if (!measure(m, out)) {
+        *out = path_start;
+    }
+    out->scale_ns = scaled_ns - start_ns;
+    out->track_ns = tracked_ns - scaled_ns;
     out->fit_ns = l1l2_clock_ns() - tracked_ns;
     return L1L2STAB_OK;
 }

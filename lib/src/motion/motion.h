@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Algorithm 1, steps 1 and 2: from one frame to the next, the camera's motion F_t.
+ * Algorithm 1, steps 1 and 2: the camera's motion F_t from frame t to frame t-1 (Qu & Song, section 2).
  *
- * Features are Shi-Tomasi corners with a minimum distance, re-selected every 10 frames or when too few are left,
- * followed by pyramidal Lucas-Kanade with a backward check. motion_overlay.c knows what never moves, motion_votes.c
- * whose word counts how much, ransac.c fits, and motion_ladder.c says what can be believed.
+ * Shi-Tomasi corners with a minimum distance are selected every 10 frames, or when too few tracks are left, and tracked
+ * by pyramidal Lucas-Kanade with a backward check. static_overlay.c excludes what stands still while the camera moves,
+ * track_weights.c prefers the background to subjects, ransac.c fits, and model_selection.c decides which model the
+ * tracks support. shot_cut.c and shot_dissolve.c find where another shot begins.
+ *
+ * Points and F_t are in diagonals of the frame, with the origin at its center, x right and y down.
  */
 #ifndef L1L2_MOTION_MOTION_H
 #define L1L2_MOTION_MOTION_H
@@ -14,40 +17,42 @@
 
 #include "common/geom.h"
 #include "image/format.h"
+#include "motion/parameters.h"
 #include "rolling_shutter/model.h"
 
 typedef struct L1L2Motion L1L2Motion;
 
 typedef struct L1L2MotionConfig {
     const L1L2FormatInfo *format;
-    int width, height;  /* of the frames, pixels */
-    int analysis_size;  /* longer side of the tracked picture, pixels */
+    int width, height;         /* of the frames, pixels */
+    int analysis_size;         /* longer side of the downscaled picture that is tracked, pixels */
     L1L2StabMotionModel model; /* the highest that is fitted */
-    uint64_t seed;
-    const L1L2StabLogger *log;
-    L1L2StabRollingShutter rolling_shutter; /* how what F leaves is fitted; NONE: not at all */
+    uint64_t seed;             /* of RANSAC */
+    const L1L2StabLogger *log; /* must outlive the object */
+    L1L2StabRollingShutter rolling_shutter; /* model of the residual that F_t leaves; NONE: it is not fitted */
+    const L1L2MotionParameters *parameters; /* must outlive the object; NULL: l1l2_motion_defaults */
 } L1L2MotionConfig;
 
 typedef struct L1L2MotionResult {
-    L1L2Mat F;          /* frame t to frame t-1, unit: the frame's diagonal; finite, invertible */
-    /* NONE: a path starts, because the caller said so or because a cut was seen. */
-    L1L2StabMotionSource model;
+    L1L2Mat F;                  /* frame t to frame t-1; finite, invertible */
+    L1L2StabMotionSource model; /* NONE: a path starts, because the caller said so or another shot begins */
     int tracks, inliers;
-    double quality;     /* [0, 1], as in L1L2StabInfo */
-    bool has_residual;  /* it was measured */
-    L1L2ShutterMeasurement residual; /* of F */
+    double quality;             /* [0, 1], as in L1L2StabInfo */
+    bool has_residual;          /* the rolling-shutter residual was measured */
+    L1L2ShutterMeasurement residual;   /* of F */
     int64_t scale_ns, track_ns, fit_ns;
 } L1L2MotionResult;
 
-/* On error *out is NULL. cfg->log must outlive the object. */
+/* On error *out is NULL. */
 L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg);
 void l1l2_motion_free(L1L2Motion *m);
 
-/* As new, with its memory kept. */
+/* Forgets all that was learned and the previous picture, as if new; memory is kept. */
 void l1l2_motion_reset(L1L2Motion *m);
 
-/* Take the next frame's first plane; it is read during the call only. starts_path: there is no motion into this frame
- * (model NONE, F the identity). An error leaves the object as reset. */
+/* Measures the motion into the next frame from its first plane, which is read during the call only. starts_path: there
+ * is no motion into this frame (model NONE, F the identity). Without a previous picture, after a reset, nothing can be
+ * measured: model IDENTITY. An error (no memory, or one of OpenCV) leaves the object as l1l2_motion_reset() does. */
 L1L2StabResult l1l2_motion_push(L1L2Motion *m, const uint8_t *data, ptrdiff_t stride, bool starts_path,
                                 L1L2MotionResult *out);
 

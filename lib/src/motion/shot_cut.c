@@ -22,16 +22,16 @@ static void remember(L1L2ShotCut *shot, const L1L2Thumbnail *thumbnail)
 
 bool l1l2_motion_cut_push(L1L2ShotCut *shot, const L1L2Thumbnail *thumbnail, bool measured)
 {
-    const bool shows = l1l2_image_thumbnail_has_detail(thumbnail);
+    const bool has_detail = l1l2_image_thumbnail_has_detail(thumbnail);
     shot->unsure = shot->unsure || !measured;
-    if (shot->unsure && shows) {
-        int unlike = 0;
-        while (unlike < shot->count && l1l2_image_thumbnails_differ(&shot->shown[unlike], thumbnail))
-            unlike++;
-        if (unlike == shot->count)
+    if (shot->unsure && has_detail) {
+        int differing = 0;
+        while (differing < shot->count && l1l2_image_thumbnails_differ(&shot->shown[differing], thumbnail))
+            differing++;
+        if (differing == shot->count)
             return true;
     }
-    if (measured && shows) {
+    if (measured && has_detail) {
         shot->unsure = false;
         remember(shot, thumbnail);
     }

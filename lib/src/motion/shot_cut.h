@@ -1,27 +1,27 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Hard cuts: a frame whose motion could not be measured starts another shot if its thumbnail is unlike everything that
- * the shot has shown lately.
+ * Detection of hard cuts: a frame whose motion could not be measured starts another shot if its thumbnail differs from
+ * all that the current shot has shown lately.
  */
 #ifndef L1L2_MOTION_SHOT_CUT_H
 #define L1L2_MOTION_SHOT_CUT_H
 
 #include "image/thumbnail.h"
 
-/* A shot, by what it has shown. */
+/* The last frame and three older ones, 8 frames apart: a second of video at 30 frames/s. */
 enum { L1L2_CUT_MEMORY = 4, L1L2_CUT_STEP = 8 /* frames */ };
 typedef struct L1L2ShotCut {
-    L1L2Thumbnail shown[L1L2_CUT_MEMORY]; /* the newest first, the others some frames apart */
-    int count, frames;                     /* thumbnails; frames since the second one */
-    bool unsure;                           /* the motion was lost, and nothing has shown the same scene since then */
+    L1L2Thumbnail shown[L1L2_CUT_MEMORY]; /* by the shot, the newest first */
+    int count;                            /* of thumbnails */
+    int frames;                           /* since the second thumbnail */
+    bool unsure;                          /* the motion was lost, and no frame was measured since then */
 } L1L2ShotCut;
 
-/* The first frame. */
+/* Forgets all pictures but this one, the first of a shot. */
 void l1l2_motion_cut_start(L1L2ShotCut *shot, const L1L2Thumbnail *thumbnail);
 
-/* The next one. True where it belongs to another shot: its motion (or that of a frame a moment ago) could not be
- * measured, and it shows something that is unlike all that the shot has shown lately. While nothing is to be seen, no
- * other shot begins. */
+/* Takes the next frame. True if it starts another shot: its motion, or that of a frame shortly before, could not be
+ * measured, and its picture differs from all that the shot has shown lately. A picture without detail starts no shot. */
 bool l1l2_motion_cut_push(L1L2ShotCut *shot, const L1L2Thumbnail *thumbnail, bool measured);
 
 #endif

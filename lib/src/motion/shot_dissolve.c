@@ -6,14 +6,8 @@
 
 enum { W = L1L2_THUMBNAIL_W, H = L1L2_THUMBNAIL_H };
 
-static const int lags[] = {6, 9, 12, 18, 24, 36, 48}; /* frames */
-static const double same_shot = 0.5;       /* correlation */
-static const double mixed = 0.9;           /* part of the variance of the picture in between that the two explain */
-static const double least_part = 0.2;      /* of each of the two in it */
-/* Both parts together are the whole picture. A picture between two of a turning camera may look like a mix as well, but
- * it has the contrast of both: from 1.17 on at this correlation. */
-static const double least_whole = 0.8, most_whole = 1.1;
-static const double least_overlap = 0.5;   /* of the three pictures */
+/* Frames between the old and the new picture, for dissolves of 4 to 40 frames. */
+static const int lags[] = {6, 9, 12, 18, 24, 36, 48};
 
 typedef struct Shift {
     int x, y;
@@ -40,18 +34,23 @@ static Sums shared_sums(const L1L2Thumbnail *a, Shift at_a, const L1L2Thumbnail 
     return s;
 }
 
-/* m as a mix of a and b in the sense of least squares: is it one? */
-static bool is_mix(const Sums *s)
+/*
+ * True if m is a mixture u a + v b of two pictures that differ. About their means, the least-squares u and v solve
+ *   [aa ab; ab bb] [u; v] = [am; bm],
+ * and the part of m's variance that the mixture explains is (u am + v bm) / mm. In a dissolve both parts are positive and
+ * their sum is 1.
+ */
+static bool is_mixture(const L1L2MotionParameters *p, const Sums *s)
 {
     const double n = s->n, aa = s->aa - s->a * s->a / n, bb = s->bb - s->b * s->b / n, mm = s->mm - s->m * s->m / n;
     const double ab = s->ab - s->a * s->b / n, am = s->am - s->a * s->m / n, bm = s->bm - s->b * s->m / n;
-    if (!(aa > 0.0 && bb > 0.0 && mm > 0.0) || ab >= same_shot * sqrt(aa * bb))
+    if (!(aa > 0.0 && bb > 0.0 && mm > 0.0) || ab >= p->dissolve_same_shot * sqrt(aa * bb))
         return false;
     const double determinant = aa * bb - ab * ab;
     const double part_a = (am * bb - bm * ab) / determinant, part_b = (bm * aa - am * ab) / determinant;
-    const double whole = part_a + part_b;
-    return part_a >= least_part && part_b >= least_part && whole >= least_whole && whole <= most_whole &&
-           part_a * am + part_b * bm >= mixed * mm;
+    const double sum = part_a + part_b;
+    return part_a >= p->dissolve_min_part && part_b >= p->dissolve_min_part && sum >= p->dissolve_min_sum &&
+           sum <= p->dissolve_max_sum && part_a * am + part_b * bm >= p->dissolve_explained * mm;
 }
 
 static int frame_before(const L1L2ShotDissolve *d, int lag)
@@ -59,7 +58,7 @@ static int frame_before(const L1L2ShotDissolve *d, int lag)
     return (d->newest + L1L2_DISSOLVE_FRAMES - lag) % L1L2_DISSOLVE_FRAMES;
 }
 
-/* Where in frame i the point is that lies at the newest frame's centre, from its own centre. */
+/* The offset from the center of frame i to the point of it that lies at the newest frame's center, by the motion. */
 static Shift shift_to(const L1L2ShotDissolve *d, int i)
 {
     const double x = d->frame[d->newest].x - d->frame[i].x, y = d->frame[d->newest].y - d->frame[i].y;
@@ -71,10 +70,11 @@ static bool dissolved(const L1L2ShotDissolve *d, int lag)
     const int old = frame_before(d, lag), between = frame_before(d, lag / 2);
     const L1L2Thumbnail *a = &d->frame[old].thumbnail, *b = &d->frame[d->newest].thumbnail;
     const Shift at_a = shift_to(d, old), at_m = shift_to(d, between);
-    if ((W - abs(at_a.x)) * (H - abs(at_a.y)) < least_overlap * W * H || abs(at_a.x) > W || abs(at_a.y) > H)
+    const double min_overlap = d->parameters->dissolve_min_overlap * W * H;
+    if ((W - abs(at_a.x)) * (H - abs(at_a.y)) < min_overlap || abs(at_a.x) > W || abs(at_a.y) > H)
         return false;
     const Sums s = shared_sums(a, at_a, &d->frame[between].thumbnail, at_m, b);
-    return s.n >= least_overlap * W * H && is_mix(&s) && l1l2_image_thumbnails_differ(a, b);
+    return s.n >= min_overlap && is_mixture(d->parameters, &s) && l1l2_image_thumbnails_differ(a, b);
 }
 
 static void append(L1L2ShotDissolve *d, const L1L2Thumbnail *thumbnail, double x, double y)
@@ -92,7 +92,7 @@ void l1l2_motion_dissolve_start(L1L2ShotDissolve *d, const L1L2Thumbnail *thumbn
 }
 
 bool l1l2_motion_dissolve_push(L1L2ShotDissolve *d, const L1L2Thumbnail *thumbnail, const L1L2Mat *F, double half_w,
-                        double half_h)
+                                 double half_h)
 {
     const double x = d->frame[d->newest].x + 0.5 * W * F->m[2] / half_w;
     const double y = d->frame[d->newest].y + 0.5 * H * F->m[5] / half_h;

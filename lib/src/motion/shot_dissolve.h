@@ -1,32 +1,33 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * One shot dissolving into another: the picture now and the one some time ago differ, and the one in between is a mix
- * of the two. Something that passes before the camera hides a part of the picture, and mixes nothing.
- *
- * Works on thumbnails, laid over each other by the measured motion. A leaf.
+ * Detection of dissolves, in which one shot turns into another: the current picture and an older one differ, and the
+ * picture halfway between them is a mixture of the two. An object that passes before the camera hides a part of the
+ * picture, but mixes nothing. The pictures are thumbnails, aligned by the measured motion.
  */
 #ifndef L1L2_MOTION_SHOT_DISSOLVE_H
 #define L1L2_MOTION_SHOT_DISSOLVE_H
 
 #include "common/geom.h"
-#include "motion/shot_cut.h"
+#include "image/thumbnail.h"
+#include "motion/parameters.h"
 
-enum { L1L2_DISSOLVE_FRAMES = 49 }; /* the longest dissolve that is seen, and one */
+enum { L1L2_DISSOLVE_FRAMES = 49 }; /* the longest distance of two compared frames, and one */
 
 typedef struct L1L2ShotDissolve {
+    const L1L2MotionParameters *parameters;
     struct {
         L1L2Thumbnail thumbnail;
-        double x, y;       /* what lies at the picture's centre, in thumbnail pixels of the path */
+        double x, y;       /* position of the picture's center along the camera path, thumbnail pixels */
     } frame[L1L2_DISSOLVE_FRAMES];
     int count, newest;
 } L1L2ShotDissolve;
 
-/* The first frame of a shot. */
+/* Forgets all frames but this one, the first of a shot. */
 void l1l2_motion_dissolve_start(L1L2ShotDissolve *d, const L1L2Thumbnail *thumbnail);
 
-/* The next one, and its motion: frame t to t-1, with (half_w, half_h) half of the frame's size in the same unit.
- * True where it belongs to another shot than the frames before; then the caller starts anew with it. */
+/* Takes the next frame and its motion F, from frame t to t-1, with (half_w, half_h) half of the frame's size in F's
+ * unit. True if the frame belongs to another shot than those before; the caller then starts anew with it. */
 bool l1l2_motion_dissolve_push(L1L2ShotDissolve *d, const L1L2Thumbnail *thumbnail, const L1L2Mat *F, double half_w,
-                        double half_h);
+                                 double half_h);
 
 #endif

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Background, not subject: how much each track has to say when the camera's motion is decided.
+ * Weights of the tracks when the camera's motion is decided: the background counts more than subjects.
  *
- *   Coverage   the frame is 8x6 cells, and the tracks of a cell share one vote: a textured walker has no more than
- *              the cells that it covers, however many corners it has.
- *   Place      towards the sides and the top, cells count more: what surrounds the rest is the background.
- *   Time       tracks that have moved with the camera before count more, and so do cells in which they did.
+ *   Coverage   the frame is divided into 8x6 cells, and the tracks of a cell share one weight. A textured subject has
+ *              no more weight than the cells that it covers, however many corners it has.
+ *   Place      cells near the left, right and upper rim count more, because subjects are in the middle or at the bottom.
+ *   History    tracks that have followed the camera before count more, and so do cells in which tracks did.
  */
 #ifndef L1L2_MOTION_TRACK_WEIGHTS_H
 #define L1L2_MOTION_TRACK_WEIGHTS_H
@@ -13,24 +13,26 @@
 #include <stdbool.h>
 
 #include "fit/point_pairs.h"
+#include "motion/parameters.h"
 
 typedef struct L1L2TrackWeights {
-    double half_w, half_h;          /* of the frame, in the pairs' unit */
-    double trust[L1L2_FIT_CELLS];  /* part of the cell's tracks that moved with the camera lately, [0, 1] */
+    const L1L2MotionParameters *parameters;
+    double half_w, half_h;            /* of the frame, in the pairs' unit */
+    double agreement[L1L2_FIT_CELLS]; /* part of the cell's tracks that followed the camera lately, [0, 1] */
 } L1L2TrackWeights;
 
-/* Forget: all cells are alike. */
-void l1l2_motion_weights_reset(L1L2TrackWeights *v);
+/* Forgets the history: all cells are alike. */
+void l1l2_motion_weights_reset(L1L2TrackWeights *w);
 
-/* votes, weights: `count` out each, > 0; the weights are of time alone. age[i]: frames that track i has moved with the
- * camera. */
-void l1l2_motion_weights_assign(const L1L2TrackWeights *v, const L1L2Pair *pairs, const int *age, int count,
-                                double *votes, double *weights);
+/* Writes `count` weights each, > 0. fit: from history alone; consensus: from coverage, place and history.
+ * age[i]: frames for which track i has followed the camera. */
+void l1l2_motion_weights_assign(const L1L2TrackWeights *w, const L1L2Pair *pairs, const int *age, int count,
+                                double *consensus, double *fit);
 
-/* Which of them moved with the camera this time. */
-void l1l2_motion_weights_learn(L1L2TrackWeights *v, const L1L2Pair *pairs, const bool *inlier, int count);
+/* Learns which of the tracks followed the camera in this frame. */
+void l1l2_motion_weights_learn(L1L2TrackWeights *w, const L1L2Pair *pairs, const bool *inlier, int count);
 
-/* What the cell of a point is trusted, [0, 1]. */
-double l1l2_motion_weights_trust(const L1L2TrackWeights *v, L1L2Point p);
+/* The agreement of the cell in which a point lies, [0, 1]. */
+double l1l2_motion_weights_agreement(const L1L2TrackWeights *w, L1L2Point p);
 
 #endif

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The seam to the imaging library: the grey, downscaled picture of each frame, its pyramid, Shi-Tomasi corners
- * (Shi & Tomasi, CVPR 1994), and points followed by flow.h. Plain C types only; the other side is vision_opencv.cpp.
+ * Algorithm 1, step 1, on pictures: the downscaled gray picture of each frame with its pyramid, Shi-Tomasi corners
+ * (Shi & Tomasi, "Good features to track", CVPR 1994), and points tracked by lucas_kanade.h. This interface has plain C
+ * types only; vision_opencv.cpp implements it.
  *
- * Points are pixels of the downscaled picture as the imaging library counts them: origin at the top left pixel's
- * centre. l1l2_vision_size() tells that picture's size, so that the caller can convert.
+ * Points are pixels of the downscaled picture, with the origin at the center of the top left pixel. l1l2_vision_size()
+ * gives that picture's size.
  */
 #ifndef L1L2_MOTION_VISION_H
 #define L1L2_MOTION_VISION_H
@@ -15,6 +16,7 @@
 
 #include "image/format.h"
 #include "image/thumbnail.h"
+#include "motion/parameters.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -26,6 +28,7 @@ typedef struct L1L2VisionConfig {
     const L1L2FormatInfo *format;
     int width, height;    /* of the frames, pixels */
     int analysis_size;    /* longer side of the downscaled picture, pixels; frames are never enlarged */
+    const L1L2MotionParameters *parameters;
     const L1L2StabLogger *log;
 } L1L2VisionConfig;
 
@@ -33,7 +36,7 @@ typedef struct L1L2Pixel {
     float x, y;
 } L1L2Pixel;
 
-/* Cells of the picture, row by row, in which no corner is looked for. */
+/* Cells of the picture, row by row, in which no corner is selected. */
 #define L1L2_MASK_W 32
 #define L1L2_MASK_H 18
 #define L1L2_MASK_CELLS (L1L2_MASK_W * L1L2_MASK_H)
@@ -41,31 +44,31 @@ typedef struct L1L2Mask {
     bool blocked[L1L2_MASK_CELLS];
 } L1L2Mask;
 
-/* On error *out is NULL. cfg->log must outlive the object. */
+/* On error *out is NULL. cfg->parameters and cfg->log must outlive the object. Pyramids are allocated here. */
 L1L2StabResult l1l2_vision_create(L1L2Vision **out, const L1L2VisionConfig *cfg);
 void l1l2_vision_free(L1L2Vision *v);
 
-/* Forget both pictures. */
+/* Forgets both pictures. */
 void l1l2_vision_reset(L1L2Vision *v);
 
-/* Size of the downscaled picture. */
+/* The size of the downscaled picture, pixels. */
 void l1l2_vision_size(const L1L2Vision *v, int *width, int *height);
 
-/* The current picture becomes the previous one; the frame's first plane, downscaled by area averaging, becomes the
- * current one, with its pyramid. Each pyramid is built once. */
+/* The current picture becomes the previous one. The frame's first plane, downscaled by area averaging, becomes the
+ * current one, and its pyramid is built. */
 L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t stride);
 
 /* The current picture as a thumbnail, downscaled by area averaging. */
 L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail);
 
-/* Up to `capacity` new corners of the PREVIOUS picture, strongest first, at least min_distance pixels from each other
- * and from the `count` points of `taken`, none in the mask (NULL: anywhere) nor where black bars begin. *found says how
- * many. */
+/* Finds up to `capacity` new corners of the PREVIOUS picture, the strongest first, at least min_distance pixels from
+ * each other and from the `count` points of `taken`, none in the mask (NULL: no mask) nor at the edge of black bars.
+ * *found is their number. */
 L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int count, const L1L2Mask *mask,
                                    double min_distance, L1L2Pixel *corners, int capacity, int *found);
 
-/* Follow `count` points of the previous picture into the current one and back.
- * ok[i]: found both ways, within the picture, and back within max_return pixels of where it started. */
+/* Tracks `count` points of the previous picture into the current one and back. ok[i]: found both ways, within the
+ * picture, and back within max_return pixels of where it started. */
 L1L2StabResult l1l2_vision_track(L1L2Vision *v, const L1L2Pixel *from, L1L2Pixel *to, bool *ok, int count,
                                  double max_return);
 

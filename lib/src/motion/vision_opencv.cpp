@@ -25,22 +25,10 @@
 
 namespace {
 
-/* The way back starts where the point came from: a point that was followed rightly is there at once, one that was not
- * is drawn to where it matches. A fifth faster than all the way from the top, and in fast pans half as many points more
- * pass. */
-constexpr int kBackLevels = 1;
-/* Corners weaker than this part of the strongest are left out. At 0.01, a dark thing on snow leaves no point but its
- * own. */
-constexpr double kCornerQuality = 0.003;
-/* Cells in which no corner was chosen get a turn of their own, by their own strongest: else a burnt-in clock would
- * leave a dark scene none. */
+/* Cells in which no corner was selected are searched again by themselves, relative to their own strongest corner: else a
+ * burnt-in clock would leave a dark scene without corners. */
 constexpr int kCellsX = 4, kCellsY = 3;
-/* The brightness of two pictures: a smaller change of contrast or mean (grey levels) is left to the tracking; a
- * contrast below the third tells nothing; and what a match has to bring, as part of the difference. */
-constexpr double kSameContrast = 0.08, kSameMean = 6.0, kFlatPicture = 2.0, kNearer = 0.7;
-/* Letterbox bars: no brighter than this, and flat but for what compression leaves. Grey levels. */
-constexpr int kBlack = 40, kFlat = 10;
-/* A long strip keeps this many pixels of its short side, as far as it has them: a window has to find its place. */
+/* A long strip keeps this many pixels of its short side, if it has them, because tracking windows have to fit in. */
 constexpr int kMinSide = 32;
 
 using Scaler = std::unique_ptr<L1L2AreaScaler, decltype(&l1l2_image_scale_free)>;
@@ -116,9 +104,8 @@ bool inside(const L1L2Vision *v, cv::Point2f p)
            p.y <= v->active.y + v->active.height - 1;
 }
 
-/* Lucas-Kanade takes a point's brightness to stay. Where a flash, a lamp or the camera's own exposure changed that of
- * the whole picture, the previous one is given the current one's mean and contrast; if that does not bring them nearer
- * to each other, it was something else. */
+/* Lucas-Kanade assumes that a point keeps its brightness. If a flash, a lamp or the camera's exposure changed the whole
+ * picture, the previous one is given the current one's mean and contrast, unless that does not make them more alike. */
 void match_brightness(L1L2Vision *v)
 {
     const int level = std::min(2, v->pyramid->levels - 1);
@@ -126,21 +113,21 @@ void match_brightness(L1L2Vision *v)
     cv::Scalar mean[2], deviation[2];
     cv::meanStdDev(before, mean[0], deviation[0]);
     cv::meanStdDev(now, mean[1], deviation[1]);
-    if (deviation[0][0] < kFlatPicture || deviation[1][0] < kFlatPicture)
+    if (deviation[0][0] < v->cfg.parameters->flat_picture || deviation[1][0] < v->cfg.parameters->flat_picture)
         return;
     const double gain = deviation[1][0] / deviation[0][0], offset = mean[1][0] - gain * mean[0][0];
-    if (std::abs(std::log(gain)) < kSameContrast && std::abs(mean[1][0] - mean[0][0]) < kSameMean)
+    if (std::abs(std::log(gain)) < v->cfg.parameters->same_contrast && std::abs(mean[1][0] - mean[0][0]) < v->cfg.parameters->same_mean)
         return;
     cv::Mat matched;
     before.convertTo(matched, CV_8U, gain, offset);
-    if (cv::norm(now, matched, cv::NORM_L1) > kNearer * cv::norm(now, before, cv::NORM_L1))
+    if (cv::norm(now, matched, cv::NORM_L1) > v->cfg.parameters->brightness_gain * cv::norm(now, before, cv::NORM_L1))
         return;
     cv::Mat base = picture_of(v->previous_pyramid, 0);
     base.convertTo(base, CV_8U, gain, offset);
     l1l2_motion_pyramid_build(v->previous_pyramid.get());
 }
 
-bool is_dark_and_flat(const cv::Mat &line)
+bool is_dark_and_flat(const L1L2MotionParameters *parameters, const cv::Mat &line)
 {
     int low = 255, high = 0;
     for (int i = 0; i < int(line.total()); i++) {
@@ -148,18 +135,18 @@ bool is_dark_and_flat(const cv::Mat &line)
         low = std::min(low, level);
         high = std::max(high, level);
     }
-    return high <= kBlack && high - low <= kFlat;
+    return high <= parameters->bar_level && high - low <= parameters->bar_range;
 }
 
 /* The thickness of the bar at one edge: rows from the top or bottom, or columns from the left or right, that are dark
  * and flat; at most 45 % of the picture. */
-int bar_thickness(const cv::Mat &picture, bool columns, bool from_end)
+int bar_thickness(const L1L2MotionParameters *parameters, const cv::Mat &picture, bool columns, bool from_end)
 {
     const int lines = columns ? picture.cols : picture.rows, most = lines * 45 / 100;
     int bar = 0;
     while (bar < most) {
         const int i = from_end ? lines - 1 - bar : bar;
-        if (!is_dark_and_flat(columns ? picture.col(i) : picture.row(i)))
+        if (!is_dark_and_flat(parameters, columns ? picture.col(i) : picture.row(i)))
             break;
         bar++;
     }
@@ -168,11 +155,11 @@ int bar_thickness(const cv::Mat &picture, bool columns, bool from_end)
 
 /* The picture within letterbox or pillarbox bars. At the edge of a bar, a corner between bar and scene moves with
  * neither, so a margin of half a window is left out there. */
-cv::Rect active_area(const cv::Mat &picture)
+cv::Rect active_area(const L1L2MotionParameters *parameters, const cv::Mat &picture)
 {
     int bar[4]; /* top, bottom, left, right */
     for (int side = 0; side < 4; side++) {
-        bar[side] = bar_thickness(picture, side >= 2, side % 2 == 1);
+        bar[side] = bar_thickness(parameters, picture, side >= 2, side % 2 == 1);
         if (bar[side] > 0)
             bar[side] += L1L2_LK_WINDOW / 2 + 1;
     }
@@ -267,14 +254,15 @@ std::vector<cv::Point> spread_out(const std::vector<cv::Point> &maxima, cv::Size
 }
 
 /* Shi & Tomasi's corners of one area: the smaller eigenvalue of the structure tensor over 3x3 pixels, its local maxima
- * down to kCornerQuality of the strongest. The result of cv::goodFeaturesToTrack(), which calls cv::parallel_for_(). */
-std::vector<cv::Point> corners_of(const cv::Mat &picture, const cv::Mat &mask, int quota, double distance)
+ * down to a part `quality` of the strongest. The result of cv::goodFeaturesToTrack(), which calls cv::parallel_for_(). */
+std::vector<cv::Point> corners_of(const cv::Mat &picture, const cv::Mat &mask, double quality, int quota,
+                                  double distance)
 {
     cv::Mat strength;
     double strongest = 0.0;
     cv::cornerMinEigenVal(picture, strength, 3, 3);
     cv::minMaxLoc(strength, nullptr, &strongest, nullptr, nullptr, mask);
-    return spread_out(local_maxima(strength, float(strongest * kCornerQuality), mask), picture.size(), distance, quota);
+    return spread_out(local_maxima(strength, float(strongest * quality), mask), picture.size(), distance, quota);
 }
 
 /* Up to `quota` corners of an area, in pixels of the downscaled picture; those found are masked for the areas to come.
@@ -283,7 +271,8 @@ int corners_in(L1L2Vision *v, const cv::Mat &picture, cv::Rect area, int quota, 
                L1L2Pixel *corners)
 {
     int found = 0;
-    for (const cv::Point corner : corners_of(picture(area), v->mask(area), quota, distance)) {
+    const double quality = v->cfg.parameters->corner_quality;
+    for (const cv::Point corner : corners_of(picture(area), v->mask(area), quality, quota, distance)) {
         const cv::Point p = corner + area.tl();
         cv::circle(v->mask, p, cvCeil(distance), cv::Scalar(0), cv::FILLED);
         corners[found++] = {float(p.x) * scale, float(p.y) * scale};
@@ -362,7 +351,7 @@ L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int co
         const cv::Mat picture = picture_of(v->previous_pyramid, half ? 1 : 0);
         const float scale = half ? 2.0f : 1.0f;
         const double distance = min_distance / double(scale);
-        const cv::Rect active = active_area(picture);
+        const cv::Rect active = active_area(v->cfg.parameters, picture);
         v->active = scaled(active, half ? 2 : 1, picture.size(), v->size);
         v->mask.create(picture.size(), CV_8U);
         v->mask.setTo(0);
@@ -393,13 +382,14 @@ L1L2StabResult l1l2_vision_track(L1L2Vision *v, const L1L2Pixel *from, L1L2Pixel
         return L1L2STAB_OK;
     return guard(v->cfg.log, [&] {
         const L1L2LkLevel *before = v->previous_pyramid->level, *now = v->pyramid->level;
-        const int all = v->pyramid->levels;
+        const int all = v->pyramid->levels, back_levels = std::min(all, int(v->cfg.parameters->backward_levels) + 1);
         for (int i = 0; i < count; i++) {
             const L1L2LkPoint start = {from[i].x, from[i].y};
             L1L2LkPoint there = start, back = start;
+            /* The way back starts at the point's origin: a point that was followed correctly is there at once, and one
+             * that was not is drawn to where it matches. */
             const bool found = l1l2_lk_follow(&v->lucas_kanade, before, now, all, start, &there) &&
-                               l1l2_lk_follow(&v->lucas_kanade, now, before, std::min(all, kBackLevels + 1), there,
-                                              &back);
+                               l1l2_lk_follow(&v->lucas_kanade, now, before, back_levels, there, &back);
             to[i] = {there.x, there.y};
             ok[i] = found && inside(v, {there.x, there.y}) &&
                     std::hypot(double(back.x - start.x), double(back.y - start.y)) <= max_return;

@@ -61,11 +61,16 @@ static double error_of(const L1L2Mat *fit, const L1L2Mat *truth)
     return l1l2_mat_corner_distance(fit, truth, 0.436, 0.245);
 }
 
-static const L1L2PairWeights none_said = {NULL, NULL};
+/* The pairs without weights. */
+static L1L2TrackSet tracks_of(int count)
+{
+    return (L1L2TrackSet){.pairs = pairs, .count = count, .threshold = threshold, .rng = &rng};
+}
 
 static int ransac(int model, int count, L1L2Mat *fit)
 {
-    return l1l2_ransac((L1L2StabMotionModel)model, pairs, none_said, count, threshold, &rng, inlier, fit);
+    const L1L2TrackSet tracks = tracks_of(count);
+    return l1l2_ransac((L1L2StabMotionModel)model, &tracks, inlier, fit);
 }
 
 static L1L2Mat some_similarity(void)
@@ -159,21 +164,22 @@ START_TEST(an_affine_map_is_recovered_with_40_percent_outliers)
 }
 END_TEST
 
-START_TEST(votes_decide_which_of_two_motions_it_is)
+START_TEST(consensus_weights_decide_which_of_two_motions_wins)
 {
     const L1L2Mat large = some_similarity(), small = l1l2_mat_similarity(1.0, -0.01, -0.04, 0.02);
-    double votes[COUNT];
+    double weights[COUNT];
     L1L2Mat fit;
     make_pairs(&large, 0.1 * threshold, 0.0);
     for (int i = 0; i < COUNT; i++) {
-        votes[i] = i < COUNT / 4 ? 4.0 : 1.0;
+        weights[i] = i < COUNT / 4 ? 4.0 : 1.0;
         if (i < COUNT / 4)
             pairs[i].to = l1l2_mat_apply(&small, pairs[i].from);
     }
-    l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, (L1L2PairWeights){votes, NULL}, COUNT, threshold, &rng, inlier,
-                &fit);
+    L1L2TrackSet tracks = tracks_of(COUNT);
+    tracks.consensus_weights = weights;
+    l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, &tracks, inlier, &fit);
     ck_assert_near(error_of(&fit, &small), 0.0, 0.3 * threshold);
-    l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, none_said, COUNT, threshold, &rng, inlier, &fit);
+    ransac(SIMILARITY, COUNT, &fit);
     ck_assert_near(error_of(&fit, &large), 0.0, 0.3 * threshold);
 }
 END_TEST
@@ -188,8 +194,10 @@ START_TEST(the_unit_does_not_matter)
     for (int i = 0; i < COUNT; i++)
         pairs[i] = (L1L2Pair){{pairs[i].from.x * 1024.0, pairs[i].from.y * 1024.0},
                               {pairs[i].to.x * 1024.0, pairs[i].to.y * 1024.0}};
-    const int again_inliers = l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, none_said, COUNT, threshold * 1024.0,
-                                          &again, inlier, &fit_px);
+    L1L2TrackSet tracks = tracks_of(COUNT);
+    tracks.threshold *= 1024.0;
+    tracks.rng = &again;
+    const int again_inliers = l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, &tracks, inlier, &fit_px);
     ck_assert_int_eq(again_inliers, inliers);
     const L1L2Mat back = l1l2_mat_rescale(fit_px, 1.0 / 1024.0);
     ck_assert_near(error_of(&fit, &back), 0.0, 1e-14);
@@ -203,8 +211,9 @@ START_TEST(equal_seeds_give_equal_bits)
     bool flags[2][COUNT];
     make_pairs(&truth, 0.3 * threshold, 0.5);
     for (int i = 0; i < 2; i++) {
-        L1L2Rng seeded = l1l2_rng_seeded(9);
-        l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, pairs, none_said, COUNT, threshold, &seeded, flags[i], &fit[i]);
+        rng = l1l2_rng_seeded(9);
+        const L1L2TrackSet tracks = tracks_of(COUNT);
+        l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, &tracks, flags[i], &fit[i]);
     }
     ck_assert_mem_eq(&fit[0], &fit[1], sizeof fit[0]);
     ck_assert_mem_eq(flags[0], flags[1], sizeof flags[0]);
@@ -245,9 +254,8 @@ START_TEST(pairs_that_are_not_finite_are_outliers)
         pairs[i].to.y = i % 2 ? NAN : INFINITY;
     ck_assert_int_eq(ransac(SIMILARITY, COUNT, &fit), COUNT - (COUNT + 2) / 3);
     ck_assert_near(error_of(&fit, &truth), 0.0, 1e-14);
-    L1L2Pair none = {{0.0, 0.0}, {NAN, 0.0}};
-    ck_assert_int_eq(l1l2_ransac(L1L2STAB_MOTION_MODEL_TRANSLATION, &none, none_said, 1, threshold, &rng, inlier, &fit),
-                     0);
+    pairs[0] = (L1L2Pair){{0.0, 0.0}, {NAN, 0.0}};
+    ck_assert_int_eq(ransac(TRANSLATION, 1, &fit), 0);
     ck_assert(l1l2_mat_is_identity(&fit));
 }
 END_TEST
@@ -263,7 +271,7 @@ int main(void)
     tcase_add_test(tc, the_larger_of_two_motions_wins);
     tcase_add_test(tc, a_translation_is_recovered_with_60_percent_outliers);
     tcase_add_test(tc, an_affine_map_is_recovered_with_40_percent_outliers);
-    tcase_add_test(tc, votes_decide_which_of_two_motions_it_is);
+    tcase_add_test(tc, consensus_weights_decide_which_of_two_motions_wins);
     tcase_add_test(tc, the_unit_does_not_matter);
     tcase_add_test(tc, equal_seeds_give_equal_bits);
     tcase_add_test(tc, where_no_similarity_exists_the_identity_comes_back);

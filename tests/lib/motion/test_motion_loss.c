@@ -59,6 +59,31 @@ START_TEST(a_frame_that_is_another_scene_is_not_measured)
 }
 END_TEST
 
+START_TEST(after_a_reset_the_first_measured_frame_knows_no_picture_before_it)
+{
+    SynthConfig cfg = synth_defaults(), other_cfg = cfg;
+    other_cfg.seed = 77;
+    Run run = run_new(&cfg);
+    Synth *other = synth_new(&other_cfg);
+    L1L2MotionResult expected[3];
+    for (int before = 0; before <= 20; before += 20) { /* frames of another clip before the reset */
+        for (int t = 0; t < before; t++)
+            push_frame(&run, t);
+        l1l2_motion_reset(run.motion);
+        for (int t = 0; t < 3; t++) { /* as after frames whose motion was given: no path starts */
+            synth_render_gray(other, t, run.picture.data[0], run.picture.stride[0]);
+            const L1L2MotionResult r = push(run.motion, &run.picture, false);
+            ck_assert_int_eq(r.model, t == 0 ? L1L2STAB_MOTION_SOURCE_IDENTITY : L1L2STAB_MOTION_SOURCE_SIMILARITY);
+            if (before == 0)
+                expected[t] = r;
+            ck_assert_mem_eq(&r.F, &expected[t].F, sizeof r.F);
+        }
+    }
+    synth_free(other);
+    run_free(&run);
+}
+END_TEST
+
 /* Grey, with a small textured patch of `size` px in its middle. */
 static L1L2MotionResult push_patch(Run *run, int t, int size)
 {
@@ -144,6 +169,7 @@ int main(void)
     TCase *tc = tcase_create("motion_loss");
     tcase_set_timeout(tc, 60);
     tcase_add_test(tc, black_frames_are_predicted_from_a_fading_motion_and_then_taken_as_still);
+    tcase_add_test(tc, after_a_reset_the_first_measured_frame_knows_no_picture_before_it);
     tcase_add_test(tc, a_frame_that_is_another_scene_is_not_measured);
     tcase_add_test(tc, a_few_points_in_one_place_give_a_translation);
     tcase_add_test(tc, a_path_start_has_no_motion_and_the_next_frame_is_measured_from_it);

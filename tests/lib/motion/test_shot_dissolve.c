@@ -49,6 +49,7 @@ static L1L2Mat motion_of(const Synth *shot, int t)
 static int begins_at(const Synth *first, const Synth *second, int from, int frames, bool passes)
 {
     static L1L2ShotDissolve dissolve;
+    dissolve.parameters = &l1l2_motion_defaults;
     int seen = -1;
     for (int t = 0; t < 120; t++) {
         const double part = fmin(1.0, fmax(0.0, (t - from + 1.0) / (frames + 1.0)));

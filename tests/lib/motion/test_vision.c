@@ -21,7 +21,8 @@ static const L1L2StabLogger logger = {count_message, NULL, L1L2STAB_LOG_TRACE};
 
 static void create(int width, int height, L1L2StabFormat format)
 {
-    const L1L2VisionConfig cfg = {l1l2_image_format_info(format), width, height, 640, &logger};
+    const L1L2VisionConfig cfg = {l1l2_image_format_info(format), width, height, 640, &l1l2_motion_defaults,
+                                   &logger};
     ck_assert_int_eq(l1l2_vision_create(&vision, &cfg), L1L2STAB_OK);
 }
 

@@ -29,8 +29,9 @@ typedef struct Run {
 static inline L1L2Motion *motion_new(int width, int height, L1L2StabFormat format)
 {
     const L1L2MotionConfig cfg = {
-        l1l2_image_format_info(format), width, height, 640, L1L2STAB_MOTION_MODEL_SIMILARITY, 1, &logger,
-        L1L2STAB_ROLLING_SHUTTER_NONE};
+        .format = l1l2_image_format_info(format), .width = width, .height = height, .analysis_size = 640,
+        .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .seed = 1, .log = &logger,
+        .rolling_shutter = L1L2STAB_ROLLING_SHUTTER_NONE};
     L1L2Motion *m;
     ck_assert_int_eq(l1l2_motion_create(&m, &cfg), L1L2STAB_OK);
     return m;

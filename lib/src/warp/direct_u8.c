@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* One loop for all numbers of taps; the number of components is a constant in each instance. */
 #include "warp/direct_u8.h"
 
 #include "warp/functions.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Splits and merges rows, one pair of functions for each of the four layouts. */
 #include "warp/packed422.h"
 
 #include "common/mem.h"

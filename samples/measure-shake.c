@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How much does a video shake? Decodes with GStreamer and lets the library measure the motion, without rendering.
+ * Measures how much a video shakes. GStreamer decodes, and the library measures the motion without rendering.
  *
  *     measure-shake [--picture=OUT.png] [--motion=OUT.txt] A [B]
  *
  *     uridecodebin ! videoconvert ! videoflip ! appsink -> l1l2stab_push(), l1l2stab_pull(s, NULL, &info)
  *
- * The shake is the root mean square of the corner path's second difference: how far a corner of the frame jumps away,
- * on average, from where the two frames before it would have put it. In pixels of a picture scaled to 640 wide. A
- * steady pan does not count, and nothing is measured across a cut.
+ * The shake is the root mean square of the second difference of the frame's corners: the distance of a corner from the
+ * place that its motion in the two frames before predicts. It is in pixels of a picture scaled to a width of 640. A
+ * steady pan has no shake. Nothing is measured across a cut.
  *
- * The picture is a slit scan: time goes to the right, and each column is the middle column of one frame. What stands
- * still or is panned steadily is smooth, and shake shows as ripples. A is above, B below.
+ * The picture is a slit scan: each column is the middle column of one frame, and time runs to the right. A still camera
+ * and a steady pan give smooth lines, and shake shows as ripples. A is above, B is below.
  */
+#include <glib/gstdio.h>
 #include <gst/app/gstappsink.h>
 #include <gst/app/gstappsrc.h>
 #include <gst/gst.h>
@@ -26,7 +27,7 @@
 #define EXIT_USAGE 2
 #define REFERENCE_WIDTH 640.0
 #define WINDOW 16 /* frames: the measured motion does not depend on it, the memory does */
-#define PICTURE_WIDTH 900 /* pixels, about: short clips get several columns a frame */
+#define PICTURE_WIDTH 900 /* pixels, approximately: a frame of a short clip gets several columns */
 #define PICTURE_FRAMES 1800
 #define SEPARATOR 6 /* pixels */
 
@@ -39,34 +40,46 @@ typedef struct Corners {
     double x[4], y[4]; /* pixels */
 } Corners;
 
-/* One video and what was found out about it. */
+/* One video and its measured shake. */
 typedef struct Video {
     const char *path;
     L1L2Stab *stab;
     GstVideoInfo info;
-    GByteArray *slits; /* the middle columns, one frame after the other */
-    int frames, lost;  /* of these, frames whose motion could not be measured */
-    Corners velocity;  /* of the frame before */
+    GByteArray *slits; /* the middle column of each frame */
+    int frames;
+    int lost;          /* number of frames whose motion could not be measured */
+    Corners velocity;  /* of the frame before, pixels per frame */
     gboolean moving;   /* velocity is set */
-    double sum;        /* of the squared accelerations, over corners and frames */
-    int count;
-    FILE *motion;      /* where each frame's F_t goes, or NULL */
-    gboolean failed;   /* and a line on stderr says why */
+    double sum;        /* sum of the squared accelerations over corners and frames */
+    int count;         /* number of terms in sum */
+    FILE *motion;      /* each frame's F_t is written to it; or NULL */
+    gboolean failed;   /* an error was printed */
 } Video;
 
-/* One line on stderr. */
+/* A copy of a file name for a line of output: control characters, such as a newline, become question marks. */
+static char *printable(const char *path)
+{
+    char *name = g_strdup(path);
+    for (char *c = name; *c; c++)
+        if (g_ascii_iscntrl(*c))
+            *c = '?';
+    return name;
+}
+
+/* Prints one line to stderr. Returns FALSE. */
 static gboolean G_GNUC_PRINTF(2, 3) fail(const char *path, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    char *text = g_strdup_vprintf(format, args);
+    char *name = printable(path), *text = g_strdup_vprintf(format, args);
     va_end(args);
-    g_printerr("measure-shake: %s: %s\n", path, text);
+    g_printerr("measure-shake: %s: %s\n", name, text);
     g_free(text);
+    g_free(name);
     return FALSE;
 }
 
-/* Runs a pipeline to its end; whether it was a good one. */
+/* Runs a pipeline to its end. Returns FALSE if that was an error. */
 static gboolean run(GstElement *pipeline, const char *path)
 {
     GstBus *bus = gst_element_get_bus(pipeline);
@@ -104,7 +117,7 @@ static void add_motion(Video *video, const L1L2StabInfo *info)
 {
     if (video->motion) {
         fprintf(video->motion, "%" G_GUINT64_FORMAT, info->index);
-        for (int i = 0; i < 9; i++) { /* with a point, whatever the locale */
+        for (int i = 0; i < 9; i++) { /* the decimal sign is a point in every locale */
             char number[G_ASCII_DTOSTR_BUF_SIZE];
             fprintf(video->motion, " %s", g_ascii_formatd(number, sizeof number, "%.12g", info->F[i]));
         }
@@ -139,7 +152,7 @@ static void add_slit(Video *video, const GstVideoFrame *frame)
         g_byte_array_append(video->slits, column + (gssize)y * GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0), 1);
 }
 
-/* A frame stays mapped, and so the decoder's, until the library has done with it: nothing is copied. */
+/* The decoder's buffer stays mapped until the library releases the frame, so nothing is copied. */
 static void release_frame(void *opaque)
 {
     GstVideoFrame *frame = opaque;
@@ -207,19 +220,19 @@ static GstFlowReturn on_sample(GstAppSink *sink, gpointer data)
     Video *video = data;
     GstSample *sample = gst_app_sink_pull_sample(sink);
     if (sample && !push_sample(video, sample)) {
-        GST_ELEMENT_ERROR(sink, LIBRARY, FAILED, ("the measurement broke off"), (NULL));
+        GST_ELEMENT_ERROR(sink, LIBRARY, FAILED, ("the measurement failed"), (NULL));
         video->failed = TRUE;
     }
     g_clear_pointer(&sample, gst_sample_unref);
     return video->failed ? GST_FLOW_ERROR : GST_FLOW_OK;
 }
 
-/* Without video nothing would ever arrive: neither a frame nor the end. */
+/* Without video the sink would receive neither a frame nor the end of the stream. */
 static void on_no_more_pads(GstElement *source, gpointer data)
 {
     GstPad *pad = gst_element_get_static_pad(data, "sink");
     if (!gst_pad_is_linked(pad))
-        GST_ELEMENT_ERROR(source, STREAM, DECODE, ("there is no video in it that can be decoded here"), (NULL));
+        GST_ELEMENT_ERROR(source, STREAM, DECODE, ("it has no video that the installed decoders support"), (NULL));
     gst_object_unref(pad);
 }
 
@@ -235,13 +248,13 @@ static gboolean measure_stream(Video *video, GstElement *pipeline, const char *u
     gst_app_sink_set_callbacks(GST_APP_SINK(sink), &callbacks, video, NULL);
     gboolean ok = run(pipeline, video->path);
     if (ok && video->stab && (l1l2stab_finish(video->stab) != L1L2STAB_OK || drain(video) != L1L2STAB_EOS))
-        ok = fail(video->path, "the measurement broke off");
+        ok = fail(video->path, "the measurement failed");
     l1l2stab_free(&video->stab);
 
     gst_object_unref(sink);
     gst_object_unref(convert);
     gst_object_unref(source);
-    return ok && (video->frames > 0 || fail(video->path, "there is no video in it"));
+    return ok && (video->frames > 0 || fail(video->path, "it has no video"));
 }
 
 static gboolean measure(Video *video)
@@ -321,13 +334,33 @@ static gboolean write_picture(const char *path, const Video *a, const Video *b)
     return ok;
 }
 
+static void print_shake(const Video *video)
+{
+    char *name = printable(video->path);
+    g_print("%s: %.3f px\n", name, shake_of(video));
+    if (video->lost > 0)
+        g_printerr("%s: the motion of %d of %d frames could not be measured\n", name, video->lost, video->frames);
+    g_free(name);
+}
+
+/* An output that is one of the inputs would destroy it. */
+static gboolean is_input(const char *output, const char *const inputs[2])
+{
+    GStatBuf out, in;
+    for (int i = 0; i < 2; i++)
+        if (output && inputs[i] && g_stat(output, &out) == 0 && g_stat(inputs[i], &in) == 0 &&
+            out.st_dev == in.st_dev && out.st_ino == in.st_ino)
+            return !fail(output, "is an input too, and will not be overwritten");
+    return FALSE;
+}
+
 int main(int argc, char **argv)
 {
     char *picture = NULL, *motion = NULL;
     const GOptionEntry options[] = {
-        {"picture", 0, 0, G_OPTION_ARG_FILENAME, &picture, "Slit scan of A above that of B", "OUT.png"},
-        {"motion", 0, 0, G_OPTION_ARG_FILENAME, &motion, "A's measured motion, for smooth-path", "OUT.txt"},
-        {NULL}};
+        {"picture", 0, 0, G_OPTION_ARG_FILENAME, &picture, "Write a slit scan of A above that of B", "OUT.png"},
+        {"motion", 0, 0, G_OPTION_ARG_FILENAME, &motion, "Write the measured motion of A, for smooth-path", "OUT.txt"},
+        G_OPTION_ENTRY_NULL};
     GOptionContext *context = g_option_context_new("A [B]");
     g_option_context_add_main_entries(context, options, NULL);
     g_option_context_add_group(context, gst_init_get_option_group());
@@ -338,16 +371,15 @@ int main(int argc, char **argv)
         return EXIT_USAGE;
     }
 
-    Video videos[2] = {{.path = argv[1]}, {.path = argv[2]}};
-    gboolean ok = TRUE;
-    if (motion && !(videos[0].motion = fopen(motion, "w")))
+    const char *const inputs[2] = {argv[1], argv[2]}; /* argv[argc] is NULL */
+    Video videos[2] = {{.path = inputs[0]}, {.path = inputs[1]}};
+    gboolean ok = !is_input(picture, inputs) && !is_input(motion, inputs);
+    if (ok && motion && !(videos[0].motion = fopen(motion, "w")))
         ok = fail(motion, "cannot be written");
     for (int i = 0; i < argc - 1 && ok; i++) {
         ok = measure(&videos[i]);
         if (ok)
-            g_print("%s: %.3f px\n", videos[i].path, shake_of(&videos[i]));
-        if (ok && videos[i].lost > 0)
-            g_printerr("%s: %d of %d frames could not be measured\n", videos[i].path, videos[i].lost, videos[i].frames);
+            print_shake(&videos[i]);
     }
     if (ok && argc == 3 && shake_of(&videos[0]) > 0)
         g_print("ratio: %.4f\n", shake_of(&videos[1]) / shake_of(&videos[0]));

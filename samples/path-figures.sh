@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Draws the paper's figures 1 and 3 from a video or a motion file, as SVG, with gnuplot. Builds the tree first.
-#   Fig. 1  the camera's path, the L1 path with weights 10, 1, 100 (Grundmann et al. 2011), ours with lambda 0.5
+# Draws figures 1 and 3 of the paper for a video or a motion file, as SVG, with gnuplot. Builds the tree first.
+#   Fig. 1  the camera's path, the L1 path with weights 10, 1, 100 (Grundmann et al. 2011), and ours with lambda 0.5
 #   Fig. 3  ours with lambda 0.1, 0.5, 1 and 2
 # usage: samples/path-figures.sh [IN [DIRECTORY]]
-#   IN          a video, or a text file as measure-shake --motion writes it; without it the demonstration's clip
-#   DIRECTORY   where fig1.svg and fig3.svg go; default: out, at the top of the tree
+#   IN          a video, or a text file from measure-shake --motion; default: the clip of render-shaky
+#   DIRECTORY   the folder for fig1.svg and fig3.svg; default: out, at the top of the tree
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -16,7 +16,7 @@ die() {
   exit 1
 }
 
-[[ $# -le 2 ]] || die "too many arguments: [IN [DIRECTORY]]"
+[[ $# -le 2 ]] || die "too many arguments. Usage: samples/path-figures.sh [IN [DIRECTORY]]"
 [[ $# -eq 0 || -r $1 ]] || die "$1: cannot be read"
 out=${2:-$top/out}
 
@@ -33,21 +33,21 @@ case ${1:-} in
   *) "$build/samples/measure-shake" --motion="$work/motion.txt" "$1" >"$work/log" ;;
 esac
 frames=$(grep -vc '^#' "$work/motion.txt")
-[[ $frames -ge 4 ]] || die "too short: $frames frames"
+[[ $frames -ge 4 ]] || die "the video is too short: $frames frames, 4 are needed"
 
-# path NAME OPTION...: the smoothed path as $work/NAME.txt
+# path NAME OPTION...: writes the smoothed path to $work/NAME.txt
 path() {
   local name=$1
   shift
   "$build/samples/smooth-path" "$work/motion.txt" crop-ratio=0.8 "$@" >"$work/$name.txt"
 }
-# Grundmann's path is one of the whole clip, with lambda 0; a trace of it picks one of the many that are optimal.
+# Grundmann's path is that of the whole clip with lambda 0. A small lambda picks one of the many optimal paths.
 path l1 lambda=0.001 weights=10,1,100 window=$((frames < 900 ? frames : 900)) overlap=3
 for lambda in 0.1 0.5 1 2; do
   path "lambda-$lambda" lambda=$lambda
 done
 
-# plot FILE LAYOUT PANELS: gnuplot's commands for the panels
+# plot FILE LAYOUT PANELS: draws the panels, which are gnuplot commands
 plot() {
   gnuplot <<END
 set terminal svg size 900,640 background rgb 'white' font 'sans,12'

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A shaky clip whose camera motion is known: the test scene, filmed from the hand in a slow pan, with a quiet tone.
- * Always the same pixels. An application that makes video itself feeds a pipeline like this.
+ * Renders a shaky clip with known camera motion: the test scene, filmed by hand in a slow pan, with a quiet tone. The
+ * pixels are the same in every run. Shows how an application feeds frames that it makes into a pipeline.
  *
  *     render-shaky OUT.mp4 [TRUTH.txt]
  *
@@ -22,16 +22,16 @@
 #define WIDTH 640
 #define HEIGHT 360
 #define FPS 30
-#define FRAMES 300 /* ten seconds; the tone lasts as many buffers */
+#define FRAMES 300 /* ten seconds, and as many buffers of the tone */
 
-/* 1600 samples last as long as a frame. */
+/* 1600 samples at 48 kHz last as long as a frame. */
 #define PIPELINE \
     "appsrc name=frames format=time ! videoconvert ! " \
     "x264enc pass=qual quantizer=20 speed-preset=faster ! h264parse ! queue ! mp4mux name=mux ! filesink name=file " \
     "audiotestsrc freq=330 volume=0.02 samplesperbuffer=1600 num-buffers=" G_STRINGIFY(FRAMES) " ! " \
     "audio/x-raw, rate=48000, channels=1 ! audioconvert ! avenc_aac ! queue ! mux."
 
-/* A walk along a wall: the shake of a hand, a slow pan and a trace of sensor noise. */
+/* A walk along a wall: hand shake, a slow pan and a little sensor noise. */
 static Synth *film_scene(void)
 {
     SynthConfig cfg = synth_defaults();
@@ -75,7 +75,7 @@ static GstBuffer *render_frame(const Synth *synth, const GstVideoInfo *info, int
     return buffer;
 }
 
-/* The pipeline asks for the next frame, in its own thread. */
+/* The pipeline asks for the next frame. This runs in a streaming thread. */
 static void on_need_data(GstAppSrc *source, guint bytes, gpointer data)
 {
     Film *film = data;
@@ -102,7 +102,7 @@ static void connect_film(GstElement *pipeline, Film *film)
     gst_object_unref(source);
 }
 
-/* Waits for the end; whether it was a good one. */
+/* Waits for the end. Returns FALSE if that was an error. */
 static gboolean wait_for_end(GstElement *pipeline)
 {
     GstBus *bus = gst_element_get_bus(pipeline);

@@ -1,32 +1,37 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A video file in, a stabilized video file out: how an application embeds the l1l2stab element.
+ * Reads a video file and writes a stabilized one. Shows how an application uses the l1l2stab element.
  *
  *     stabilize-file [--lambda=0.5 --crop-ratio=0.9 ...] IN OUT.mp4
  *
- *     uridecodebin ! queue ! ... ! videoconvert ! l1l2stab ! queue ! x264enc ! h264parse ! mp4mux ! filesink
+ *     uridecodebin ! queue ! ... ! videoconvert ! l1l2stab ! queue ! x264enc ! h264parse ! mp4mux ! fdsink
  *                  ! (audio, if any) audioconvert ! audioresample ! avenc_aac ! queue ! mp4mux
  *
- * - The stabilizer holds a window of frames back, so the muxer needs that much of the other streams too: the audio's
- *   queue is after the encoder, where it costs little, and has no limit. With the default limit of one second the
- *   pipeline would stand still for ever.
- * - AAC audio is taken over as it is; anything else is decoded and encoded anew.
- * - The options are the element's own properties, so this file knows none of their names, ranges and defaults.
- * - OUT appears only when it is complete: until then it is OUT.part, which is removed if anything goes wrong.
+ * - The stabilizer delays the video by its window, so the muxer has to wait, and the audio has to be stored meanwhile.
+ *   The audio's queue therefore has no limit. It is behind the encoder, where the data are small. With the default
+ *   limit of one second the pipeline would stop forever.
+ * - AAC audio is copied. Any other audio is decoded and encoded again.
+ * - The options are the properties of the element. This file does not know their names, ranges or defaults.
+ * - The output is written to a temporary file in the folder of OUT, and renamed to OUT when it is complete. The
+ *   temporary file is removed if anything goes wrong, or if the program is interrupted.
  */
+#include <errno.h>
+#include <fcntl.h>
 #include <glib-unix.h>
 #include <glib/gstdio.h>
 #include <gst/gst.h>
+#include <signal.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-/* Where the decoder may stop: AAC as it lies in MP4 and Matroska needs no decoding. */
+/* The decoder stops at these formats. AAC as MP4 and Matroska store it is not decoded. */
 #define DECODED_CAPS "video/x-raw(ANY); audio/mpeg, mpegversion=4, stream-format=raw; audio/x-raw(ANY)"
 
 /*
- * 4:2:0 at 8 bits is the H.264 that plays everywhere. videoflip turns what a phone filmed upright: the muxers drop the
- * tag that tells players to. Both it and deinterlace pass on untouched what does not concern them, and so does
- * capssetter, see drop_absurd_rate().
+ * 4:2:0 with 8 bits is the H.264 format that every player supports. videoflip rotates what a phone filmed upright,
+ * because the muxers drop the tag that asks the player to do it. videoflip and deinterlace change nothing in a video
+ * that does not need them. For capssetter see drop_absurd_rate().
  */
 #define VIDEO \
     "uridecodebin name=source  queue name=video ! capssetter name=rate ! deinterlace ! videoconvert ! " \
@@ -42,23 +47,26 @@
 #define FIND_STREAMS_S 19
 
 typedef struct App {
-    char *in, *out;
-    GMainLoop *loop;
+    const char *in, *out;
+    int in_fd;               /* of an input that is no regular file, or -1 */
+    char *part;              /* the temporary file's name */
+    int part_fd;
+    GMainLoop *loop;         /* NULL while it does not run */
     GstElement *pipeline;
     GstElement *source, *video, *stabilizer, *mux; /* the pipeline's own */
     gboolean has_video, has_audio;
     gboolean failed;
-    gboolean terminal;       /* stderr is one: the progress line is overwritten */
+    gboolean terminal;       /* stderr is a terminal: the progress line is overwritten */
     gint64 started_us;
-    gint frames, reached_ms; /* given out; atomic: set in a streaming thread */
+    gint frames, reached_ms; /* count and timestamp of the emitted frames; atomic: set in a streaming thread */
 } App;
 
-/* One line on stderr, and the end. For the main thread. */
+/* Prints one line to stderr and ends the main loop. Only for the main thread. */
 static void G_GNUC_PRINTF(2, 3) fail(App *app, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    char *text = g_strdelimit(g_strdup_vprintf(format, args), "\n", ' ');
+    char *text = g_strdelimit(g_strdup_vprintf(format, args), "\r\n", ' ');
     va_end(args);
     if (!app->failed)
         g_printerr("%sstabilize-file: %s\n", app->terminal && app->frames ? "\n" : "", text);
@@ -68,7 +76,7 @@ static void G_GNUC_PRINTF(2, 3) fail(App *app, const char *format, ...)
         g_main_loop_quit(app->loop);
 }
 
-/* Every property that the stabilizer adds to its base classes becomes an option of that name. */
+/* Sets the property that has the option's name. */
 static gboolean set_property_option(const char *option, const char *text, gpointer data, GError **error)
 {
     App *app = data;
@@ -79,11 +87,11 @@ static gboolean set_property_option(const char *option, const char *text, gpoint
     g_value_init(&value, spec->value_type);
     gboolean ok = gst_value_deserialize_with_pspec(&value, text, spec);
     if (!ok)
-        g_set_error(error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE, "%s: '%s' is not a value for it", option, text);
+        g_set_error(error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE, "%s: '%s' is not a valid value", option, text);
     else if (g_param_value_validate(spec, &value)) {
         ok = FALSE;
         g_set_error(error, G_OPTION_ERROR, G_OPTION_ERROR_BAD_VALUE,
-                    "%s: %s is out of range (gst-inspect-1.0 l1l2stab has the ranges)", option, text);
+                    "%s: %s is out of range (gst-inspect-1.0 l1l2stab lists the ranges)", option, text);
     } else
         g_object_set_property(G_OBJECT(app->stabilizer), name, &value);
     g_value_unset(&value);
@@ -102,7 +110,7 @@ static void add_property_options(App *app, GOptionGroup *group)
         GOptionEntry entry[2] = {
             {spec->name, 0, 0, G_OPTION_ARG_CALLBACK, (gpointer)set_property_option,
              g_param_spec_get_blurb((GParamSpec *)spec), g_type_name(spec->value_type)},
-            {NULL},
+            G_OPTION_ENTRY_NULL,
         };
         g_option_group_add_entries(group, entry);
     }
@@ -124,7 +132,7 @@ static gboolean parse_arguments(App *app, int *argc, char ***argv)
         g_clear_error(&error);
     } else if (*argc != 3) {
         ok = FALSE;
-        g_printerr("usage: stabilize-file [--lambda=0.5 ...] IN OUT.mp4     (--help has all options)\n");
+        g_printerr("usage: stabilize-file [--lambda=0.5 ...] IN OUT.mp4     (--help lists all options)\n");
     } else {
         app->in = (*argv)[1];
         app->out = (*argv)[2];
@@ -139,7 +147,7 @@ static gboolean same_file(const char *a, const char *b)
     return g_stat(a, &sa) == 0 && g_stat(b, &sb) == 0 && sa.st_dev == sb.st_dev && sa.st_ino == sb.st_ino;
 }
 
-/* The muxer that fits OUT's name; NULL if none does. */
+/* Returns the muxer for OUT's suffix, or NULL if there is none. */
 static const char *muxer_for(const char *out)
 {
     static const char *const known[][2] = {
@@ -182,13 +190,13 @@ static void link_audio(App *app, GstPad *pad, gboolean raw)
         gst_element_sync_state_with_parent(audio);
     else
         GST_ELEMENT_ERROR(app->pipeline, STREAM, FORMAT,
-                          ("the audio cannot be joined to the output: %s", error ? error->message : "its format"),
+                          ("the audio cannot be added to the output: %s", error ? error->message : "unsupported format"),
                           (NULL));
     g_clear_error(&error);
 }
 
-/* Some files call the clock of their timestamps, such as 90000, their frame rate. An encoder that believes it gives a
- * frame next to no bits; without a rate it goes by the timestamps. */
+/* Some files state the clock of their timestamps, such as 90000, as their frame rate. With that rate the encoder gives
+ * each frame almost no bits. Without a rate it uses the timestamps. */
 static void drop_absurd_rate(App *app, const GstCaps *caps)
 {
     int numerator, denominator;
@@ -203,8 +211,8 @@ static void drop_absurd_rate(App *app, const GstCaps *caps)
 }
 
 /*
- * A decoded stream: the first of video and of audio are used. No data flows before all streams are known. This runs in
- * a streaming thread, so it reports by way of the bus.
+ * Links a decoded stream. The first video stream and the first audio stream are used. This runs in a streaming thread,
+ * so it reports errors on the bus.
  */
 static void on_pad_added(GstElement *source, GstPad *pad, App *app)
 {
@@ -230,7 +238,7 @@ static void on_no_more_pads(GstElement *source, App *app)
 {
     (void)source;
     if (!app->has_video)
-        GST_ELEMENT_ERROR(app->pipeline, STREAM, DECODE, ("there is no video in it that can be decoded here"), (NULL));
+        GST_ELEMENT_ERROR(app->pipeline, STREAM, DECODE, ("it has no video that the installed decoders support"), (NULL));
 }
 
 static gboolean on_message(GstBus *bus, GstMessage *message, gpointer data)
@@ -262,9 +270,9 @@ static gboolean show_progress(gpointer data)
     const double seconds = (double)(g_get_monotonic_time() - app->started_us) / G_USEC_PER_SEC;
     char percent[16] = "";
 
-    /* decodebin (1.22) now and then loses a demuxer's error that comes before it has the demuxer in place. */
+    /* decodebin (1.22) sometimes loses an error that a demuxer posts before it is linked. */
     if (!app->has_video && !app->has_audio && seconds > FIND_STREAMS_S) {
-        fail(app, "%s: no stream was found in it: is it complete?", app->in);
+        fail(app, "%s: no stream was found in it. Is it complete?", app->in);
         return G_SOURCE_REMOVE;
     }
     if (frames > 0 && gst_element_query_duration(app->source, GST_FORMAT_TIME, &duration) && duration > 0) {
@@ -276,7 +284,7 @@ static gboolean show_progress(gpointer data)
     return G_SOURCE_CONTINUE;
 }
 
-/* A named element of the pipeline, which goes on owning it. */
+/* Returns a named element of the pipeline. The pipeline owns it. */
 static GstElement *element_named(App *app, const char *name)
 {
     GstElement *element = gst_bin_get_by_name(GST_BIN(app->pipeline), name);
@@ -284,7 +292,7 @@ static GstElement *element_named(App *app, const char *name)
     return element;
 }
 
-/* All but the muxer and the file, whose kind the arguments say. */
+/* Builds the pipeline except for the muxer and the file, which depend on the arguments. */
 static gboolean build_video(App *app)
 {
     GError *error = NULL;
@@ -304,9 +312,15 @@ static gboolean build_video(App *app)
     return TRUE;
 }
 
-static gboolean build_ends(App *app, const char *part, const char *muxer)
+/* A regular file is opened by its name. Anything else, such as a FIFO, has been opened already. */
+static char *input_uri(const App *app)
 {
-    char *uri = gst_filename_to_uri(app->in, NULL);
+    return app->in_fd < 0 ? gst_filename_to_uri(app->in, NULL) : g_strdup_printf("fd://%d", app->in_fd);
+}
+
+static gboolean build_ends(App *app, const char *muxer)
+{
+    char *uri = input_uri(app);
     GstCaps *caps = gst_caps_from_string(DECODED_CAPS);
     g_object_set(app->source, "uri", uri, "caps", caps, NULL);
     g_signal_connect(app->source, "pad-added", G_CALLBACK(on_pad_added), app);
@@ -314,16 +328,20 @@ static gboolean build_ends(App *app, const char *part, const char *muxer)
     gst_caps_unref(caps);
     g_free(uri);
 
-    GstElement *file = gst_element_factory_make("filesink", NULL);
+    GstElement *file = gst_element_factory_make("fdsink", NULL);
     app->mux = gst_element_factory_make(muxer, NULL);
     if (!app->mux || !file) {
-        fail(app, "there is no %s: is gstreamer1.0-plugins-good installed?", muxer);
+        fail(app, "GStreamer has no element %s. Is gstreamer1.0-plugins-good installed?", muxer);
         return FALSE;
     }
-    g_object_set(file, "location", part, NULL);
+    g_object_set(file, "fd", app->part_fd, NULL);
     gst_bin_add_many(GST_BIN(app->pipeline), app->mux, file, NULL);
-    return gst_element_link_pads(element_named(app, "encoded"), "src", app->mux, "video_%u") &&
-           gst_element_link(app->mux, file);
+    if (!gst_element_link_pads(element_named(app, "encoded"), "src", app->mux, "video_%u") ||
+        !gst_element_link(app->mux, file)) {
+        fail(app, "the video cannot be linked to %s", muxer);
+        return FALSE;
+    }
+    return TRUE;
 }
 
 static void run(App *app)
@@ -332,60 +350,117 @@ static void run(App *app)
     app->loop = g_main_loop_new(NULL, FALSE);
     app->started_us = g_get_monotonic_time();
     gst_bus_add_watch(bus, on_message, app);
-    g_unix_signal_add(SIGINT, on_signal, app);
-    g_unix_signal_add(SIGTERM, on_signal, app);
     g_timeout_add(app->terminal ? PROGRESS_TERMINAL_MS : PROGRESS_LOG_MS, show_progress, app);
 
     gst_element_set_state(app->pipeline, GST_STATE_PLAYING);
     g_main_loop_run(app->loop);
     if (!app->failed) {
-        g_atomic_int_set(&app->reached_ms, G_MAXINT); /* all of it */
+        g_atomic_int_set(&app->reached_ms, G_MAXINT); /* 100 % */
         show_progress(app);
         g_printerr(app->terminal ? "\n" : "");
     }
     gst_element_set_state(app->pipeline, GST_STATE_NULL);
     gst_bus_remove_watch(bus);
     gst_object_unref(bus);
-    g_main_loop_unref(app->loop);
+    g_clear_pointer(&app->loop, g_main_loop_unref);
 }
 
-/* Checks the arguments; NULL if they are fine. To be freed. */
-static char *objection(const App *app, const char *muxer)
+/* Leaves a signal alone that the parent process ignores: nohup does so with SIGHUP. */
+static void handle_signal(App *app, int number)
+{
+    struct sigaction old;
+    if (sigaction(number, NULL, &old) != 0 || old.sa_handler != SIG_IGN)
+        g_unix_signal_add(number, on_signal, app);
+}
+
+/* Each signal that would end the program removes the temporary file first. SIGPIPE is ignored: the output is complete
+ * even if nobody reads the progress any more. */
+static void handle_signals(App *app)
+{
+    handle_signal(app, SIGINT);
+    handle_signal(app, SIGTERM);
+    handle_signal(app, SIGHUP);
+    signal(SIGPIPE, SIG_IGN);
+}
+
+/* Checks the arguments. Returns what is wrong, to be freed, or NULL. */
+static char *check_arguments(const App *app, const char *muxer)
 {
     if (!g_file_test(app->in, G_FILE_TEST_EXISTS))
-        return g_strdup_printf("%s: there is no such file", app->in);
+        return g_strdup_printf("%s: no such file", app->in);
     if (g_file_test(app->in, G_FILE_TEST_IS_DIR) || g_access(app->in, R_OK) != 0)
         return g_strdup_printf("%s: cannot be read", app->in);
     if (same_file(app->in, app->out))
         return g_strdup_printf("%s: is the input too, and will not be overwritten", app->out);
     if (!muxer)
         return g_strdup_printf("%s: the name has to end with .mp4, .m4v, .mov or .mkv", app->out);
+    if (g_file_test(app->out, G_FILE_TEST_EXISTS) && !g_file_test(app->out, G_FILE_TEST_IS_REGULAR))
+        return g_strdup_printf("%s: exists and is not a regular file", app->out);
     return NULL;
+}
+
+/*
+ * Opens an input that is no regular file, such as a FIFO. GStreamer's filesrc would wait in open() and read(), where it
+ * cannot be interrupted. Its fdsrc waits in poll(), where it can.
+ */
+static gboolean open_input(App *app)
+{
+    if (g_file_test(app->in, G_FILE_TEST_IS_REGULAR))
+        return TRUE;
+    app->in_fd = g_open(app->in, O_RDONLY | O_NONBLOCK | O_CLOEXEC, 0);
+    if (app->in_fd >= 0)
+        return TRUE;
+    fail(app, "%s: %s", app->in, g_strerror(errno));
+    return FALSE;
+}
+
+/* Creates the temporary file beside OUT, so that it can be renamed. It never opens a file that exists. */
+static gboolean create_part(App *app)
+{
+    char *folder = g_path_get_dirname(app->out);
+    app->part = g_build_filename(folder, ".stabilize-file-XXXXXX", NULL);
+    g_free(folder);
+    app->part_fd = g_mkstemp_full(app->part, O_RDWR | O_CLOEXEC, 0666);
+    if (app->part_fd >= 0)
+        return TRUE;
+    fail(app, "%s: cannot be written: %s", app->out, g_strerror(errno));
+    return FALSE;
+}
+
+/* Gives the temporary file its final name, or removes it. */
+static void finish_part(App *app)
+{
+    if (app->part_fd >= 0) {
+        const gboolean closed = close(app->part_fd) == 0;
+        if (!app->failed && (!closed || g_rename(app->part, app->out) != 0))
+            fail(app, "%s: cannot be written: %s", app->out, g_strerror(errno));
+        if (app->failed)
+            g_unlink(app->part);
+    }
+    g_free(app->part);
 }
 
 static void stabilize(App *app)
 {
     const char *muxer = muxer_for(app->out);
-    char *reason = objection(app, muxer);
-    if (reason) {
-        fail(app, "%s", reason);
-        g_free(reason);
+    char *fault = check_arguments(app, muxer);
+    if (fault) {
+        fail(app, "%s", fault);
+        g_free(fault);
         return;
     }
 
-    char *part = g_strconcat(app->out, ".part", NULL);
-    if (build_ends(app, part, muxer))
+    handle_signals(app);
+    if (open_input(app) && create_part(app) && build_ends(app, muxer))
         run(app);
-    if (app->failed)
-        g_unlink(part);
-    else if (g_rename(part, app->out) != 0)
-        fail(app, "%s: cannot be written", app->out);
-    g_free(part);
+    finish_part(app);
+    if (app->in_fd >= 0)
+        close(app->in_fd);
 }
 
 int main(int argc, char **argv)
 {
-    App app = {.terminal = isatty(STDERR_FILENO)};
+    App app = {.in_fd = -1, .part_fd = -1, .terminal = isatty(STDERR_FILENO)};
     int status = EXIT_USAGE;
 
     gst_init(NULL, NULL);

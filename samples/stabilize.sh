@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Stabilizes a video file and says by how much the shake fell. Builds the tree first, installing what is missing.
+# Stabilizes a video file and reports the shake before and after. First builds the tree and installs missing packages.
 # usage: samples/stabilize.sh [OPTION...] [IN [OUT]]
-#   IN       a video; without it a shaky clip is rendered
+#   IN       a video; default: a shaky clip that it renders
 #   OUT      ends with .mp4, .m4v, .mov or .mkv; default: IN's name with -stabilized.mp4, in the current directory
 #   OPTION   a property of the element, such as --lambda 1 or --crop-ratio=0.85; --help lists them
-# BUILD_DIR in the environment: another build directory than build
+# The environment variable BUILD_DIR names the build directory; default: build, at the top of the tree
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -22,18 +22,18 @@ while [[ ${1:-} == -* ]]; do
     --) shift && break ;;
     --help | *=*) options+=("$1") ;;
     *)
-      [[ $# -gt 1 ]] || die "$1: there is no value after it"
+      [[ $# -gt 1 ]] || die "$1: its value is missing"
       options+=("$1=$2")
       shift
       ;;
   esac
   shift
 done
-[[ $# -le 2 ]] || die "too many arguments: [OPTION...] [IN [OUT]], and options as --name=value"
+[[ $# -le 2 ]] || die "too many arguments. Usage: samples/stabilize.sh [OPTION...] [IN [OUT]], with options as --name=value"
 
-# What can be said before anything is installed or built.
+# Check the input before anything is installed or built.
 if [[ $# -gt 0 ]]; then
-  [[ -e $1 ]] || die "$1: there is no such file"
+  [[ -e $1 ]] || die "$1: no such file"
   [[ -f $1 && -r $1 ]] || die "$1: cannot be read"
 fi
 
@@ -60,6 +60,9 @@ fi
 [[ $out != -* ]] || out=./$out
 picture=${out%.*}-before-after.png
 
+# A file name for a line of the report: control characters, such as a newline, become question marks.
+printable() { echo "${1//[[:cntrl:]]/?}"; }
+
 "$build/samples/stabilize-file" "${options[@]}" "$in" "$out"
 
 echo "measuring" >&2
@@ -68,8 +71,8 @@ before=$(sed -n '1s/.*: \([0-9.]* px\)$/\1/p' <<<"$result")
 after=$(sed -n '2s/.*: \([0-9.]* px\)$/\1/p' <<<"$result")
 left=$(sed -n 's/^ratio: //p' <<<"$result" | LC_ALL=C awk '{ printf ": %.1f %% of it is left", 100 * $1 }')
 cat <<END
-input    $in
-output   $out
-picture  $picture (slit scan, before above after)
+input    $(printable "$in")
+output   $(printable "$out")
+picture  $(printable "$picture") (slit scan, before above after)
 shake    $before before, $after after$left (rms jump of a frame's corner, at 640 px width)
 END

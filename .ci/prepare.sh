@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Makes the tree ready to use: installs the Debian packages that are missing, gets OSQP's source, configures and builds.
-# Safe to repeat; a second or two when there is nothing to do. tests/run.sh and samples/stabilize.sh begin with it.
-# usage: .ci/prepare.sh [BUILD_DIR]     (default: build, at the top of the tree)
+# Makes the tree ready to use: installs missing Debian packages, downloads OSQP's source, configures and builds. It can
+# be repeated, and takes a second or two when there is nothing to do. tests/run.sh and samples/stabilize.sh call it.
+# usage: .ci/prepare.sh [BUILD_DIR [MESON_SETUP_OPTION...]]     (default: build, at the top of the tree)
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$(realpath -m "${1:-$top/build}")
+options=("${@:2}")
 overlay=$top/subprojects/packagefiles/osqp/meson.build
 
-# Megabytes that have to be free: on a bare Debian some 540 packages, of which apt keeps the archives; and the build.
+# Free disk space that is needed, in megabytes. A minimal Debian lacks about 540 packages, and apt keeps their archives.
 packages_need=1700
 archives_need=450
 build_need=100
@@ -24,7 +25,7 @@ die() {
 need_space() {
   local free
   free=$(df -Pm "$1" | awk 'NR == 2 { print $4 }')
-  [[ $free -ge $2 ]] || die "too little disk space for $3: $1 has $free MB free, about $2 MB are needed"
+  [[ $free -ge $2 ]] || die "not enough disk space for $3: $1 has $free MB free, about $2 MB are needed"
 }
 
 missing_packages() {
@@ -35,7 +36,7 @@ missing_packages() {
   done
 }
 
-# As root, by sudo, or not at all; never waits for a password when there is nobody to type it.
+# Runs a command as root, with sudo if needed. Without a terminal sudo must not ask for a password.
 as_root() {
   if [[ $(id -u) -eq 0 ]]; then
     "$@"
@@ -54,7 +55,7 @@ apt() {
 install_packages() {
   local by_hand log missing
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    say "not a Debian system: the packages named in .ci/packages are taken to be there"
+    say "this is not a Debian system: install what .ci/packages lists in your system's own way"
     return
   fi
   mapfile -t missing < <(missing_packages)
@@ -63,23 +64,23 @@ install_packages() {
   by_hand="apt-get install --no-install-recommends ${missing[*]}"
   if [[ $(id -u) -ne 0 ]]; then
     { command -v sudo >/dev/null && as_root true; } ||
-      die "packages are missing, and there is no right to install them. As root: $by_hand"
+      die "packages are missing and can only be installed as root. Run as root: $by_hand"
   fi
   need_space /usr "$packages_need" "the packages"
   need_space /var "$archives_need" "the packages"
 
-  say "installing what is missing, which may take some minutes: ${missing[*]}"
+  say "installing missing packages, which may take some minutes: ${missing[*]}"
   log=$(mktemp)
-  # The lists may be absent or out of date: refreshed only when the first attempt fails.
+  # Update apt's lists only if the first attempt fails: then they may be missing or outdated.
   if ! apt install --no-install-recommends "${missing[@]}" >"$log" 2>&1 &&
     ! { apt update && apt install --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
     sed -n 's/^[EW]: /  /p' "$log" | head -n 3 >&2
-    die "apt-get could not install them (no network?); all it said is in $log. By hand, as root: $by_hand"
+    die "apt-get could not install the packages (no network?). Its output is in $log. Run as root: $by_hand"
   fi
   rm -f "$log"
 }
 
-# Meson lays our overlay over OSQP's source only when it unpacks it.
+# Meson copies our build file into OSQP's source only when it unpacks the source.
 refresh_overlay() {
   local unpacked
   unpacked=$(sed -n 's/^directory *= *//p' "$top/subprojects/osqp.wrap")
@@ -87,7 +88,7 @@ refresh_overlay() {
   [[ ! -d $unpacked ]] || cmp -s "$overlay" "$unpacked/meson.build" || cp "$overlay" "$unpacked/meson.build"
 }
 
-# The tree that the build directory belongs to: another one if it was moved or copied.
+# Prints the tree that the build directory was configured for. It is another one if the tree was moved or copied.
 configured_for() {
   python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["directories"]["source"])' \
     "$build/meson-info/meson-info.json" 2>/dev/null || true
@@ -100,8 +101,8 @@ configure() {
     wipe=(--wipe)
   fi
   say "configuring $build"
-  meson setup "${wipe[@]}" "$build" "$top" >&2 ||
-    die "meson could not configure (see above); if $build is damaged, remove it and try again"
+  meson setup "${wipe[@]}" "${options[@]}" "$build" "$top" >&2 ||
+    die "meson could not configure (see above). If $build is damaged, remove it and try again"
 }
 
 install_packages

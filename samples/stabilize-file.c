@@ -190,7 +190,7 @@ static void link_audio(App *app, GstPad *pad, gboolean raw)
         gst_element_sync_state_with_parent(audio);
     else
         GST_ELEMENT_ERROR(app->pipeline, STREAM, FORMAT,
-                          ("the audio cannot be added to the output: %s", error ? error->message : "unsupported format"),
+                          ("the audio cannot be written: %s", error ? error->message : "its format is not supported"),
                           (NULL));
     g_clear_error(&error);
 }
@@ -238,7 +238,8 @@ static void on_no_more_pads(GstElement *source, App *app)
 {
     (void)source;
     if (!app->has_video)
-        GST_ELEMENT_ERROR(app->pipeline, STREAM, DECODE, ("it has no video that the installed decoders support"), (NULL));
+        GST_ELEMENT_ERROR(app->pipeline, STREAM, DECODE, ("it has no video that the installed decoders support"),
+                          (NULL));
 }
 
 static gboolean on_message(GstBus *bus, GstMessage *message, gpointer data)

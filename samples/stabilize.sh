@@ -29,7 +29,7 @@ while [[ ${1:-} == -* ]]; do
   esac
   shift
 done
-[[ $# -le 2 ]] || die "too many arguments. Usage: samples/stabilize.sh [OPTION...] [IN [OUT]], with options as --name=value"
+[[ $# -le 2 ]] || die "too many arguments. Usage: samples/stabilize.sh [--name=value...] [IN [OUT]]"
 
 # Check the input before anything is installed or built.
 if [[ $# -gt 0 ]]; then

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Puts OSQP's source distribution, as pinned in osqp.wrap, into packagefiles/. Does nothing if it is there.
+# Downloads OSQP's source distribution into packagefiles/. osqp.wrap pins it by its hash. Does nothing if it is there.
 # usage: subprojects/fetch-osqp.sh
+# Without network, copy the file into packagefiles/ from elsewhere.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-# Debian's own: its setuptools and wheel are what pip needs to look into a source distribution.
+# The system's Python, because pip needs the setuptools and wheel packages installed for it.
 python=/usr/bin/python3
 
 wrap_value() { sed -n "s/^$1 *= *//p" osqp.wrap; }
@@ -27,19 +28,19 @@ for module in pip setuptools wheel setuptools_scm; do
     die "$python has no $module: apt-get install python3-pip python3-setuptools python3-setuptools-scm python3-wheel"
 done
 
-# In the target's own directory, so that the last step is an atomic rename.
+# The temporary directory is in the same folder as the target, so that the last step is an atomic rename.
 temporary=$(mktemp -d packagefiles/.fetch.XXXXXX 2>/dev/null) || die "cannot write into $PWD/packagefiles"
 trap 'rm -rf "$temporary"' EXIT
 
 name=${file%.tar.gz}
 echo "${name%%-*}==${name#*-} --hash=sha256:$hash" >"$temporary/requirements.txt"
-echo "fetch-osqp: getting $file from the Python package index"
+echo "fetch-osqp: downloading $file from the Python package index"
 "$python" -m pip download --quiet --disable-pip-version-check --no-input --no-cache-dir --retries 2 --timeout 20 \
   --no-deps --no-build-isolation --no-binary "${name%%-*}" --require-hashes -r "$temporary/requirements.txt" \
   -d "$temporary" >"$temporary/log" 2>&1 </dev/null || {
   reason=$(sed -n 's/^ *ERROR: //p' "$temporary/log" | tail -n 1)
   ! grep -q 'Retrying' "$temporary/log" || reason="the package index cannot be reached (no network?)"
-  die "could not get $file: ${reason:-pip failed}. It can be put into $PWD/packagefiles by hand, too"
+  die "could not download $file: ${reason:-pip failed}. You can also copy it into $PWD/packagefiles"
 }
-hash_fits "$temporary/$file" || die "$file came with another sha256 than $hash: not used"
+hash_fits "$temporary/$file" || die "$file does not have the sha256 $hash: it was removed"
 mv -f "$temporary/$file" "$target"

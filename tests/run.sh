@@ -1,18 +1,32 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Builds the tree (installing what is missing) and runs all tests. The last line has the totals.
-# usage: tests/run.sh [MESON_TEST_OPTION...]     such as: tests/run.sh --suite lib
-#        BUILD_DIR=dir tests/run.sh              another build directory than build
+# Builds the tree, after installing missing packages, and runs the tests. The last line has the totals.
+# usage: tests/run.sh [MESON_TEST_OPTION...]               all tests, or some: tests/run.sh --suite lib
+#        tests/run.sh --sanitize [MESON_TEST_OPTION...]    the library's and the element's tests under AddressSanitizer
+#                                                          and UndefinedBehaviorSanitizer, built in build-sanitize
+# The environment variable BUILD_DIR names another build directory. CC and CXX choose the compiler of a new one.
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-build=${BUILD_DIR:-$top/build}
+setup=()
+suites=()
+build=$top/build
+if [[ ${1:-} == --sanitize ]]; then
+  shift
+  build=$top/build-sanitize
+  # clang does not link a sanitizer's runtime into a shared library, so undefined symbols have to be allowed there.
+  setup=(-Db_sanitize=address,undefined -Db_lundef=false -Dbuildtype=debugoptimized)
+  [[ $# -gt 0 ]] || suites=(--suite lib --suite plugin)
+  export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1}
+  export UBSAN_OPTIONS=${UBSAN_OPTIONS:-halt_on_error=1:print_stacktrace=1}
+fi
+build=${BUILD_DIR:-$build}
 log=$build/meson-logs/testlog.json
 
-"$top/.ci/prepare.sh" "$build"
+"$top/.ci/prepare.sh" "$build" "${setup[@]}"
 
 rm -f "$log"
 status=0
-meson test -C "$build" --no-rebuild --print-errorlogs "$@" </dev/null || status=$?
+meson test -C "$build" --no-rebuild --print-errorlogs "${suites[@]}" "$@" </dev/null || status=$?
 python3 "$top/tests/totals.py" "$log" || status=1
 exit "$status"

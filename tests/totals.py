@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Adds up a test run: totals.py BUILD/meson-logs/testlog.json
+"""Adds up test runs: totals.py BUILD/meson-logs/testlog.json...
 
-Counts the single tests of each Check program, from Check's own closing line, and every other program as one test. The
-last line is "N passed, N failed, N skipped". The exit code is 1 if a test failed or none ran.
+Each test of a Check program counts, according to Check's last line of output. Any other program counts as one test. The
+last line of output is "N passed, N failed, N skipped". The exit code is 1 if a test failed, or if one of the logs is
+missing or has no test that passed.
 """
 import json
 import re
 import sys
 
-# A suite may run several Check runners: each closes with this line.
+# A Check program may have several runners. Each prints this line at its end.
 CHECK_LINE = re.compile(r'^\d+%: Checks: (\d+), Failures: (\d+), Errors: (\d+)', re.MULTILINE)
 
 
@@ -19,30 +20,39 @@ def count(entry):
     checks = sum(total[0] for total in totals)
     bad = sum(total[1] + total[2] for total in totals)
     if entry['result'] in ('OK', 'EXPECTEDFAIL'):
-        # A Check program without a single check has tested nothing.
+        # A Check program that ran no test counts as a failure.
         return (0, 1, 0) if totals and checks == 0 else (max(checks, 1), 0, 0)
     if entry['result'] == 'SKIP':
         return 0, 0, 1
-    # Killed, timed out or crashed before its closing line: at least one test failed.
+    # If the program was killed, timed out or crashed before its last line, at least one test failed.
     return checks - bad, max(bad, 1), 0
 
 
-def main():
+def read_log(path):
+    """The entries of one log: a JSON object per line. A missing log has none."""
     try:
-        with open(sys.argv[1], encoding='utf-8') as log:
-            entries = [json.loads(line) for line in log if line.strip()]
+        with open(path, encoding='utf-8') as log:
+            return [json.loads(line) for line in log if line.strip()]
     except OSError as error:
         print(f'no test ran: {error}', file=sys.stderr)
-        entries = []
+        return []
 
-    counts = [count(entry) for entry in entries]
-    passed, failed, skipped = (sum(column) for column in zip(*counts)) if counts else (0, 0, 0)
+
+def main():
+    total = [0, 0, 0]
+    complete = len(sys.argv) > 1
     print()
-    for entry, (_, bad, _) in zip(entries, counts):
-        if bad:
-            print(f'failed: {entry["name"]} ({entry["result"]})')
-    print(f'{passed} passed, {failed} failed, {skipped} skipped')
-    return 1 if failed or passed == 0 else 0
+    for path in sys.argv[1:]:
+        passed_here = 0
+        for entry in read_log(path):
+            counts = count(entry)
+            total = [sum(pair) for pair in zip(total, counts)]
+            passed_here += counts[0]
+            if counts[1]:
+                print(f'failed: {entry["name"]} ({entry["result"]})')
+        complete = complete and passed_here > 0
+    print('{} passed, {} failed, {} skipped'.format(*total))
+    return 0 if complete and total[1] == 0 else 1
 
 
 if __name__ == '__main__':

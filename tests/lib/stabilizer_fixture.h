@@ -107,7 +107,7 @@ static inline int stabilize(L1L2Stab *s, Clip *clip, L1L2StabInfo *info, SynthPi
                 ck_assert_ptr_eq(opaque, &clip->released[pulled]);
                 ck_assert_int_eq(clip->released[pulled], 0);
             }
-            if (out) {
+            if (out && pulled < clip->frames) { /* the caller's array ends there */
                 memcpy(picture.data, out[pulled].data, sizeof picture.data);
                 memcpy(picture.stride, out[pulled].stride, sizeof picture.stride);
             }

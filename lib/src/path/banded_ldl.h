@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Symmetric positive definite systems of a fixed bandwidth: L D L' in place, O(n band^2), no fill.
+ * LDL' factorization of symmetric positive definite band matrices (Golub & Van Loan, "Matrix Computations", section
+ * 4.3), in place. The only LDL' of the library.
  *
- * Stored by columns of the lower band: entry k of column i, at i * band + k, is the system's (i + k, i). What reaches
- * beyond the last row is not read. For the loops to be unrolled `band` must be a constant where these are called: all
- * is inlined.
+ * `band` is the number of stored diagonals: the main one and those below it. Eliminating column i changes the entries
+ * (j, k) with i < k <= j < i + band alone, because only rows i to i + band - 1 have an entry in column i. These lie in
+ * the band. So L has the band of the matrix, there is no fill and no need to permute, and the time is O(size band^2).
+ *
+ * Storage: by columns of the lower band. Entry k of column i, at i * band + k, is the matrix's (i + k, i). Entries
+ * beyond the last row are not read. The functions are inlined, so that the loops unroll where `band` is a constant.
  */
 #ifndef L1L2_PATH_BANDED_LDL_H
 #define L1L2_PATH_BANDED_LDL_H
@@ -19,9 +23,9 @@
 #define L1L2_PATH_INLINE static inline
 #endif
 
-/* L, whose diagonal is 1, below the diagonal, D on it. original: the diagonal as it was. Where rounding has eaten a
- * pivot (lambda 0 and no active crop row: the path may be anywhere) its component is not moved. False where the numbers
- * give out. */
+/* Leaves D on the diagonal and L, whose own diagonal is 1, below it. original: the diagonal before. Where rounding
+ * leaves no digit of a pivot (with lambda = 0 and no active constraint the path may be anywhere), the pivot is replaced
+ * by a huge one, so that this component does not move. False where a number is not finite. */
 L1L2_PATH_INLINE bool l1l2_path_ldl_factorize(double *system, const double *original, int size, const int band)
 {
     for (int i = 0; i < size; i++) {
@@ -43,7 +47,7 @@ L1L2_PATH_INLINE bool l1l2_path_ldl_factorize(double *system, const double *orig
     return true;
 }
 
-/* x: the right-hand side, then the solution. */
+/* Solves with the factors. x: the right-hand side, then the solution. */
 L1L2_PATH_INLINE void l1l2_path_ldl_solve(const double *factors, double *x, int size, const int band)
 {
     for (int i = 0; i < size; i++) {

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+/* G2011, section 3.2. */
 static const double min_zoom = 0.9, max_zoom = 1.1, max_turn = 0.1, max_skew = 0.05, max_stretch = 0.1;
 
 typedef struct Rows {
@@ -27,7 +28,14 @@ static void put(Rows *rows, int r, const double g[L1L2_DIM], double lo, double h
     rows->lo[r] = lo, rows->hi[r] = hi;
 }
 
-/* The rows on the parameters of B itself. Corners come with both signs, so rows are two-sided. */
+/*
+ * The rows on the parameters of B itself. With B = [A+E  F-B'  X; B'+F  A-E  Y] and q = (X, Y, A/2, B'/2, E/2, F/2), a
+ * point (x, y) goes to
+ *     ((A + E) x + (F - B') y + X,  (B' + F) x + (A - E) y + Y)
+ *   = (q0 + 2x q2 - 2y q3 + 2x q4 + 2y q5,  q1 + 2y q2 + 2x q3 - 2y q4 + 2x q5).
+ * With (u, v) = (2x, 2y) these are the two inclusion rows of a corner. The corners come with both signs, so two-sided
+ * rows on all four corners are more than is needed for one side each, but they are the definition written down.
+ */
 static void update_rows(const L1L2PathCropWindow *crop, Rows *rows)
 {
     if (crop->dim == 2) {
@@ -63,8 +71,22 @@ void l1l2_path_constraint_rows(const L1L2PathCropWindow *crop, const L1L2Mat *ca
     L1L2Mat inverse;
     double c[L1L2_DIM];
     update_rows(crop, &rows);
-    /* B = C^-1 P: of the linear part a product, whose parameters are bilinear in those of its factors; of the
-     * translation that of P, less C's, in turn. */
+    /*
+     * Change of variable from B to P, where B = C^-1 P. Write M for the linear part of C^-1, and L and T for the linear
+     * part and the translation of P. Then B has the linear part M L and the translation M (T - T_C).
+     *
+     * Linear part. A map [A+E  F-B; B+F  A-E] is the sum of four basis matrices with the coefficients A, B, E and F:
+     *     I = [1 0; 0 1],  J = [0 -1; 1 0],  K = [1 0; 0 -1],  S = [0 1; 1 0].
+     * With M = aI + bJ + eK + fS and L = AI + BJ + EK + FS, the product is bilinear in the two sets of coefficients.
+     * With J J = -I, K K = S S = I, J K = S, K J = -S, J S = -K, S J = K, K S = -J and S K = J its coefficients are
+     *     A' = aA - bB + eE + fF        B' = bA + aB + fE - eF
+     *     E' = eA + fB + aE - bF        F' = fA - eB + bE + aF.
+     * M is known, so each is linear in L. Insert them into a row with the coefficients g[2] to g[5], and sort by A, B,
+     * E and F: the result is a row on P with the coefficients moved[2] to moved[5].
+     *
+     * Translation. M (T - T_C) is linear in T with the matrix M = [a+e  f-b; b+f  a-e], transposed in moved[0] and
+     * moved[1]. The constant M T_C goes to the bounds: `shift`.
+     */
     if (!l1l2_mat_inverse(*camera, &inverse))
         inverse.m[0] = inverse.m[4] = NAN; /* rows that no solver can meet, rather than wrong ones */
     l1l2_mat_to_q(&inverse, c);

@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What an update transform B_t may do (G2011, section 3.2; design: the paper takes both over unchanged).
+ * The constraints on an update transform B_t: inclusion and proximity.
  *
- *   Inclusion  the four corners of the crop window, mapped by B_t, stay in the source frame: 8 rows. Of a translation
- *              2 say it all.
- *   Proximity  of B_t = [p r x; s u y]: 0.9 <= p, u <= 1.1, |r|, |s| <= 0.1, |r + s| <= 0.05, |p - u| <= 0.1: 6 rows.
- *              Of a similarity, where p = u and r = -s, 2 rows are left; of a translation none.
+ * Source: the paper, section 4.3, takes both from Grundmann, Kwatra & Essa, CVPR 2011 (G2011), section 3.2.
  *
- * Unit: the frame's diagonal. B_t = identity satisfies all of them with slack, and they are convex: on the way from any
- * B_t to the identity there is always a transform that satisfies them.
+ *   Inclusion  The four corners of the crop window, mapped by B_t, stay in the source frame: 8 rows. For a translation
+ *              2 rows suffice.
+ *   Proximity  For B_t = [p r x; s u y]: 0.9 <= p, u <= 1.1, |r|, |s| <= 0.1, |r + s| <= 0.05, |p - u| <= 0.1: 6 rows.
+ *              For a similarity, where p = u and r = -s, 2 rows are left. For a translation there are none.
+ *
+ * A row is two-sided, lo <= g q <= hi, in the parameters q of geom.h. Unit: the frame's diagonal. B_t = identity
+ * satisfies every row with room to spare, and the set is convex. So between any B_t and the identity there is a
+ * transform that satisfies all rows.
  */
 #ifndef L1L2_PATH_CONSTRAINTS_H
 #define L1L2_PATH_CONSTRAINTS_H
@@ -28,17 +31,18 @@ L1L2PathCropWindow l1l2_path_crop_window(int width_px, int height_px, double rat
 /* Rows for a motion model of `dim` parameters. */
 int l1l2_path_constraint_count(int dim);
 
-/* The rows as lo <= G q <= hi on the parameters q of P = camera B, in the frame of reference of `camera`.
- * camera: a C_t of the motion model. What is beyond its row count and parameters is not written to. */
+/* The rows as lo <= G q <= hi on the parameters q of P = camera B, in the reference frame of `camera`.
+ * camera: a C_t of the motion model. Rows and parameters that the model does not have are not written. */
 void l1l2_path_constraint_rows(const L1L2PathCropWindow *crop, const L1L2Mat *camera,
                                double G[L1L2_PATH_CONSTRAINTS][L1L2_DIM], double lo[L1L2_PATH_CONSTRAINTS],
                                double hi[L1L2_PATH_CONSTRAINTS]);
 
-/* How far B, of the motion model, breaks its worst row: <= 0 where all hold. Diagonals for inclusion, plain numbers
- * for proximity. */
+/* By how much B, of the motion model, violates its worst row: <= 0 where all rows hold. Diagonals for inclusion, plain
+ * numbers for proximity. */
 double l1l2_path_constraint_excess(const L1L2PathCropWindow *crop, const L1L2Mat *B);
 
-/* The transform nearest to B on the straight way to the identity that satisfies every row. */
+/* The transform nearest to B, on the straight line from B to the identity, that satisfies every row. The identity where
+ * B is not finite. */
 L1L2Mat l1l2_path_constraint_shrink(const L1L2PathCropWindow *crop, const L1L2Mat *B);
 
 #endif

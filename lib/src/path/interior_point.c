@@ -1,4 +1,49 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Derivation.
+ *
+ * Inequalities come in pairs around one linear form v = g'q of the path. A pair has slacks s0, s1 > 0 and duals y0,
+ * y1 > 0.
+ *   Term:        v = D^k q (one component), with a slack variable e >= |v|.    s0 = e - v,    s1 = e + v
+ *   Constraint:  v = G q (one row).                                            s0 = hi - v,   s1 = v - lo
+ *
+ * Optimality (KKT):
+ *   in q         r := 2 lambda (q - c) + sum over all pairs (y0 - y1) g = 0                       [stationarity]
+ *   in e         y0 + y1 = w_k for each term                                                      [kept from the start]
+ *   in the rows  s0 y0 = s1 y1 = 0 for each pair                                                  [complementarity]
+ *
+ * Newton's step replaces the right-hand side of complementarity by a target, s y + s dy + y ds = mu - (second order).
+ * Let a = mu - second order - s y, which `dy` holds until the step is known (aim()), and d = y/s. Then for each side
+ *   dy = a/s - d ds.                                                                              (1)
+ *
+ * Constraint. ds0 = -dv and ds1 = dv. By (1), dy0 - dy1 = (a0/s0 - a1/s1) + (d0 + d1) dv. So the pair adds the weight
+ * d0 + d1 to g g' in the system, and a0/s0 - a1/s1 to the force (crop_force()).
+ *
+ * Term. ds0 = de - dv and ds1 = de + dv. Both terms' duals keep their sum, dy0 + dy1 = 0. Inserting (1) gives
+ *   a0/s0 + a1/s1 = d0 (de - dv) + d1 (de + dv), so
+ *   de = (T + (d0 - d1) dv) / (d0 + d1)      with T = a0/s0 + a1/s1.
+ * Then ds0 = de - dv = (T - 2 d1 dv) / (d0 + d1) and ds1 = de + dv = (T + 2 d0 dv) / (d0 + d1): move_term(). Written
+ * so, nothing cancels where one side's d is far larger than the other's, as it is near the optimum. The force is
+ *   dy0 - dy1 = a0/s0 - a1/s1 - d0 ds0 + d1 ds1
+ *             = 2 (d1 a0/s0 - d0 a1/s1) / (d0 + d1)  +  4 d0 d1 / (d0 + d1) dv.
+ * So the pair adds the weight 4 d0 d1 / (d0 + d1) to g g' (assemble()), and the first summand to the force
+ * (term_force()). The weight is twice the harmonic mean of the two d: it vanishes with either, which is right, since e
+ * can give way as long as one side is slack.
+ *
+ * System. Stationarity after the step, r + dr = 0, is (2 lambda + sum of weight g g') dq = -(r + sum of force g). A
+ * form reaches the frames t-3 to t, so the matrix has a half-bandwidth of 4 dim - 1, and its LDL' factorization has no
+ * fill outside the band.
+ *
+ * Predictor and corrector (Mehrotra). The affine step aims at mu = 0. Let it reach the gap left' along the longest step
+ * that keeps all s and y >= 0. The corrector then solves with the same factors, for mu = (left'/gap)^3 gap / sides, and
+ * with the affine step's own product ds dy as the second-order term. It goes 0.995 of the way to the nearest bound.
+ *
+ * Certificate. The Lagrangian at the iterate's duals is convex in (q, e), and its gradient there is r in q and 0 in e.
+ * Its value is the objective less the gap, the sum of all s y. If r were 0 it would be minimal, so the gap would bound
+ * the distance from the optimum. With r /= 0 its minimum is lower by at most the sum over components of r^2/(4 lambda),
+ * by the strong convexity of the L2 term. It is also lower by at most |r|_1 within the feasible set, where any two
+ * values of a component differ by less than a diagonal. The smaller of the two is added (stationarity()).
+ */
 #include "path/interior_point.h"
 
 #include <math.h>
@@ -7,15 +52,27 @@
 #include "common/mem.h"
 #include "path/banded_ldl.h"
 
-/* Typical distance of a slack from its bound at the start, diagonals: the size of a shake. */
+/*
+ * Parameters
+ *
+ * name             value  unit        effect, and what chose the value
+ * ---------------  -----  ----------  --------------------------------------------------------------------------------
+ * initial_slack    1e-2   diagonals   Distance of e from |v| at the start: the size of a shake.
+ * step_fraction    0.995  -           Part of the way to the nearest bound that a step goes: less than 1.
+ * bound_goal       1e-13  objective   Stop below this bound: objectives are 0.01 to 10, and doubles give nothing more.
+ * enough_absolute  1e-9   objective   A bound below enough_absolute + enough_relative * objective is converged. That
+ * enough_relative  1e-7   -           keeps corners within 0.01 px of the reference at 1920x1080 (test_solver).
+ * max_iterations   60     iterations  15 to 25 are usual (docs/path.md). It bounds the work of a solve.
+ * patience         2      iterations  How many in a row may be no better than the best before the method stops. Near
+ *                                     the limit of double precision iterates get worse again.
+ */
 static const double initial_slack = 1e-2;
-static const double step_fraction = 0.995; /* of the way to the nearest bound */
-/* Of the bound on the objective's distance from the optimum; objectives are about 0.01 to 10. */
-static const double bound_goal = 1e-13; /* nearer than this, double precision gives nothing more */
-static const double enough_absolute = 1e-9, enough_relative = 1e-7; /* to be called the optimum */
-static const int max_iterations = 60;
+static const double step_fraction = 0.995;
+static const double bound_goal = 1e-13;
+static const double enough_absolute = 1e-9, enough_relative = 1e-7;
+static const int max_iterations = 60, patience = 2;
 
-/* Two inequalities around one linear form: s > 0 their slacks, y > 0 their duals. Side 0 bounds v from above. */
+/* Two inequalities around one linear form v: their slacks s > 0 and their duals y > 0. Side 0 bounds v from above. */
 typedef struct Pair {
     double s[2], y[2], ds[2], dy[2];
     double dv; /* step of v */
@@ -83,8 +140,8 @@ void l1l2_path_interior_point_free(L1L2PathInteriorPoint *ipm)
     l1l2_mem_free(ipm);
 }
 
-/* Strictly feasible on both sides: q = c, e = |D c| + initial_slack; duals half the weight for terms (their sum is the
- * weight, from here on), and of the same product s y for crop rows. */
+/* A strictly feasible start: q = c and e = |D c| + initial_slack. Each dual of a term is half its weight, so that their
+ * sum is the weight from here on. The duals of the constraints are such that all products s y are equal. */
 L1L2_PATH_INLINE void start(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, const int dim)
 {
     const int n = p->count;
@@ -96,7 +153,7 @@ L1L2_PATH_INLINE void start(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p
         for (int t = l1l2_path_first_term(order, p->history); t < n; t++)
             for (int j = 0; j < dim; j++, pair++) {
                 const double v = l1l2_path_difference(p, (const double(*)[L1L2_DIM])ipm->q, order, t, j);
-                *pair = (Pair){.dv = 0.0}; /* a step that gave out is not carried into the next window */
+                *pair = (Pair){.dv = 0.0}; /* a step that was not finite is not carried into the next window */
                 pair->s[0] = fabs(v) + initial_slack - v;
                 pair->s[1] = fabs(v) + initial_slack + v;
                 pair->y[0] = pair->y[1] = 0.5 * p->weight[order - 1];
@@ -142,10 +199,7 @@ static double dual_force(const Pair *pair)
     return pair->y[0] - pair->y[1];
 }
 
-/* Stationarity in q: 2 lambda (q - c) + sum (y0 - y1) grad v, into r. Returns what r adds to the gap in a bound on the
- * objective's distance from the optimum: the Lagrangian is strongly convex by the L2 term, so r moves its minimum by at
- * most |r_t|^2 / (4 lambda_t); and since the crop rows keep every component within less than a diagonal of anywhere
- * else that is feasible, by at most |r|_1. */
+/* The residual of stationarity, into r. Returns what r adds to the gap in the certificate, see above. */
 L1L2_PATH_INLINE double stationarity(const L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, double *r,
                                      const int dim)
 {
@@ -192,8 +246,7 @@ L1L2_PATH_INLINE void assemble(L1L2PathInteriorPoint *ipm, const L1L2PathProblem
         }
 }
 
-/* The target of a side's s y: mu, less what the affine step's own second-order term will add. The affine step itself
- * aims at 0. dy holds the target between here and the step. */
+/* a = mu - second order - s y of each side, into dy. corrector: s and y steps of the affine step are in ds and dy. */
 static void aim(Pair *pair, int count, double mu, bool corrector)
 {
     for (int i = 0; i < count; i++)
@@ -203,7 +256,7 @@ static void aim(Pair *pair, int count, double mu, bool corrector)
         }
 }
 
-/* What a pair's targets put on the right-hand side. */
+/* What a pair's targets a, in dy, add to the right-hand side. */
 static double term_force(const Pair *pair)
 {
     const double d0 = pair->y[0] / pair->s[0], d1 = pair->y[1] / pair->s[1];
@@ -215,8 +268,7 @@ static double crop_force(const Pair *pair)
     return pair->dy[0] / pair->s[0] - pair->dy[1] / pair->s[1];
 }
 
-/* The steps of a pair's slacks and duals that follow from the step of its form. In this shape nothing cancels where one
- * side's d is far larger than the other's. */
+/* The steps of a pair's slacks and duals that follow from dv, the step of its form. */
 static void move_term(Pair *pair)
 {
     const double d0 = pair->y[0] / pair->s[0], d1 = pair->y[1] / pair->s[1];
@@ -306,7 +358,7 @@ static void move(Pair *pair, int count, double alpha)
         }
 }
 
-/* Predictor and corrector with one factorization. False where the numbers give out. */
+/* Predictor and corrector with one factorization. False where a number is not finite. */
 L1L2_PATH_INLINE bool iterate(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, double gap, const int dim)
 {
     const int sides = 2 * (ipm->terms + ipm->crops), size = dim * p->count;
@@ -358,8 +410,7 @@ L1L2_PATH_INLINE L1L2PathInteriorPointReport solve(L1L2PathInteriorPoint *ipm, c
             since_best = 0;
             keep(ipm, p);
         }
-        /* Near the limit of double precision iterates can get worse again: the best one is kept. */
-        if (bound <= bound_goal || ++since_best > 2 || !iterate(ipm, p, gap, dim))
+        if (bound <= bound_goal || ++since_best > patience || !iterate(ipm, p, gap, dim))
             break;
     }
     return best;

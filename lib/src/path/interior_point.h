@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The predictor: a primal-dual interior point made for the window problem of path_problem.h.
+ * The predictor: a primal-dual interior point method made for the window problem of problem.h.
  *
- * Mehrotra's predictor-corrector (SIAM J. Optim. 1992). Every inequality comes in a pair around one linear form v of q:
- * e - v and e + v of a term's component (v = D^k q), hi - v and v - lo of a crop row (v = G q). The slacks e and the
- * duals are eliminated by hand: a pair adds one weight to v's outer product, 4 d1 d2 / (d1 + d2) for a term and
- * d1 + d2 for a crop row, with d = y/s of its two sides. What is left is one positive definite system in q, banded in
- * frame order: a third difference reaches three frames, of 2, 4 or 6 components each (path_band.h; all loops over
- * components are compiled for each number). So an iteration is O(n), and no memory is allocated after create.
+ * Source: S. Mehrotra, "On the implementation of a primal-dual interior point method", SIAM J. Optim. 2(4), 1992. The
+ * derivation is in interior_point.c.
  *
- * q = c (all B_t = identity) is strictly feasible; every iterate stays so. What converges is the stationarity in q and
- * the gap, the sum of all s y; together they bound how far the objective is above its optimum: a certificate.
+ * All slacks and duals are eliminated by hand. What is left in each iteration is one positive definite system in q. It
+ * is banded in frame order, because a third difference reaches three frames (banded_ldl.h). So an iteration takes time
+ * in proportion to the frames. No memory is allocated after create.
+ *
+ * q = c (all B_t = identity) is strictly feasible, and so is every iterate. The method ends with a certificate: a bound
+ * on how far the objective is above its optimum.
  */
 #ifndef L1L2_PATH_INTERIOR_POINT_H
 #define L1L2_PATH_INTERIOR_POINT_H
@@ -29,8 +29,8 @@ typedef struct L1L2PathInteriorPointReport {
 L1L2PathInteriorPoint *l1l2_path_interior_point_create(int capacity, int dim);
 void l1l2_path_interior_point_free(L1L2PathInteriorPoint *ipm);
 
-/* Solve into *point, whose arrays belong to ipm and last until the next call. The point is finite and strictly within
- * the crop rows also where it did not converge. Deterministic. */
+/* Solves into *point, whose arrays belong to ipm and last until the next call. Takes at most 60 iterations. The point
+ * is finite, and strictly within the constraints, also where it did not converge. Deterministic. */
 L1L2PathInteriorPointReport l1l2_path_interior_point_solve(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p,
                                                            L1L2PathPoint *point);
 

@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The window problem (paper, eq. 4 to 7), written once.
+ * The window problem (paper, eq. 4 to 7), stated once.
  *
- *   minimise over q_t:   sum_k w_k sum_t |D^k q_t|_1  +  sum_t lambda_t |q_t - c_t|^2,      k = 1, 2, 3
- *   subject to           lo_t <= G_t q_t <= hi_t        (inclusion and proximity, crop.h)
+ *   minimize over q_t:   sum_k w_k sum_t |D^k q_t|_1  +  sum_t lambda_t |q_t - c_t|^2,      k = 1, 2, 3
+ *   subject to           lo_t <= G_t q_t <= hi_t        (inclusion and proximity, constraints.h)
  *
  * q_t are the parameters of P_t (geom.h: 2, 4 or 6 by the motion model), c_t those of C_t, in diagonals, relative to
- * the window's first frame. They are scaled so that all move the frame's corners alike: it is the variable that is
- * scaled, in both norms. w_k = 1 (eq. 5); lambda_t is lambda * 30 / frame rate.
+ * the window's first frame. They are scaled so that a change of any of them by 1 moves the frame's corners by 1. The
+ * variable itself is scaled, so the scale is the same in both norms. w_k = 1 (eq. 5). lambda_t is lambda * 30 / frame
+ * rate.
  *
- * D^k q_t is the k-th backward difference, a "term". It reaches back over the `history` last frames that were given
- * out before the window (0 to 3; the continuous join), which are constants; terms that would reach further do not
- * exist. So order k has a term at each frame from max(0, k - history) on.
+ * D^k q_t is the k-th backward difference; a "term" is one of them. Terms reach back over the `history` last frames
+ * that were emitted before the window (0 to 3; the continuous join). These frames are constants. A term that would
+ * reach further back does not exist, so order k has a term at each frame from max(0, k - history) on.
  *
- * P rather than B is the variable: the L1 and L2 parts then have constant coefficients, and only G depends on C_t.
+ * The variable is P, not B: the L1 and L2 parts then have constant coefficients, and only G depends on C_t.
  */
 #ifndef L1L2_PATH_PROBLEM_H
 #define L1L2_PATH_PROBLEM_H

@@ -3,8 +3,17 @@
 
 #include <assert.h>
 
-/* Hand-made equilibration in place of the solver's own, which measured worse: rows are multiplied by these, the slacks
- * of a difference with them. */
+/*
+ * Parameters: equilibration by hand. With OSQP's default settings, its own scaling among them, hard windows end 6 to 10
+ * px off.
+ *
+ * name        value        effect, and what chose the value
+ * ----------  -----------  ------------------------------------------------------------------------------------------
+ * term_scale  20, 50, 200  Multiplies the rows of |D^k q| and their slacks. Differences of higher order are smaller
+ *                          numbers; scaled, all rows have residuals of like size. With these values OSQP accepts
+ *                          the predictor's point at its first test on 481 of 496 problems (test_solver).
+ * crop_scale  3            The same for the rows of the constraints.
+ */
 static const double term_scale[L1L2_PATH_ORDERS] = {20.0, 50.0, 200.0};
 static const double crop_scale = 3.0;
 
@@ -42,7 +51,7 @@ L1L2PathQp *l1l2_path_problem_as_qp_create(int capacity, int dim)
 {
     const L1L2PathProblem largest = {
         .dim = dim, .rows = l1l2_path_constraint_count(dim), .count = capacity, .history = L1L2_PATH_HISTORY};
-    /* A component of q stands in 2 (2 + 3 + 4) rows of differences and in the crop rows; a slack in two rows. */
+    /* A component of q is in 2 (2 + 3 + 4) rows of differences and in its frame's constraints; a slack is in 2 rows. */
     return l1l2_path_qp_create(l1l2_path_qp_cols(&largest), l1l2_path_qp_rows(&largest),
                           dim * capacity * (18 + largest.rows) + 2 * l1l2_path_term_components(&largest));
 }
@@ -53,7 +62,7 @@ static void put(L1L2PathQp *qp, int row, double value)
     qp->value[qp->entries++] = value;
 }
 
-/* The rows in which q_{t,j} stands: the differences at t .. t+k, then the frame's own crop rows. */
+/* The rows that contain q_{t,j}: the differences at t .. t+k, then the frame's own constraints. */
 static void fill_q_column(const L1L2PathProblem *p, L1L2PathQp *qp, int t, int j)
 {
     for (int order = 1; order <= L1L2_PATH_ORDERS; order++) {
@@ -71,7 +80,7 @@ static void fill_q_column(const L1L2PathProblem *p, L1L2PathQp *qp, int t, int j
         put(qp, l1l2_path_qp_row_constraint(p, t, r), crop_scale * p->G[t][r][j]);
 }
 
-/* Slacks, and the bounds of their rows: what a difference takes from the past is a constant. */
+/* A slack's column, and the bounds of its rows. The part of a difference that lies in the past is a constant. */
 static void fill_term(const L1L2PathProblem *p, L1L2PathQp *qp, int order, int i, int j)
 {
     const int t = i + l1l2_path_first_term(order, p->history);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The window problem of path_problem.h as a quadratic program in z = (q, e), with a slack e >= |D^k q| for each
+ * The window problem of problem.h as a quadratic program in z = (q, e), with a slack e >= |D^k q| for each
  * component of each term.
  *
  *   columns   q      d t + j
@@ -8,9 +8,10 @@
  *   rows      D^k    2 (d (terms of orders below k + i) + j) + s       s = 0:  D - e <= 0,  s = 1: -D - e <= 0
  *             G_t    2 d (all terms) + R t + r
  *
- * d: components of q; R: crop rows of a frame; n: frames; t: frame; j: component; i: term of order k, at frame
- * i + l1l2_path_first_term(k); r: crop row.
- * Rows and slacks are scaled by hand: e is scale_k times the slack, its rows are multiplied by scale_k.
+ * d: components of q; R: constraint rows of a frame; n: frames; t: frame; j: component; i: term of order k, at frame
+ * i + l1l2_path_first_term(k); r: constraint row.
+ * Rows and slacks are scaled: the column is scale_k times the slack, and its two rows are multiplied by scale_k. The
+ * scales are in problem_as_qp.c.
  */
 #ifndef L1L2_PATH_PROBLEM_AS_QP_H
 #define L1L2_PATH_PROBLEM_AS_QP_H

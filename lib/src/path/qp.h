@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The seam to the solver of quadratic programs: plain data in, plain data out, no solver's types.
+ * The interface to the solver of quadratic programs: plain data in and out, and no type of the solver.
  *
- *   minimise 1/2 z' P z + q' z   subject to   l <= A z <= u,      P diagonal and >= 0
+ *   minimize 1/2 z' P z + q' z   subject to   l <= A z <= u,      P diagonal and >= 0
  */
 #ifndef L1L2_PATH_QP_H
 #define L1L2_PATH_QP_H
 
 #include <l1l2stab/l1l2stab.h>
 
-#define L1L2_PATH_QP_INFINITY 1e30 /* a bound that is none */
+#define L1L2_PATH_QP_INFINITY 1e30 /* stands for no bound */
 
 /* A in compressed sparse columns. */
 typedef struct L1L2PathQp {
@@ -25,7 +25,7 @@ typedef struct L1L2PathQp {
 
 typedef struct L1L2PathQpSettings {
     int max_iterations;
-    double rho;       /* step of the alternating directions: small trusts the start, large its own way */
+    double rho;       /* step size of ADMM: a small one stays near the start */
     double tolerance; /* of both residuals, absolute */
 } L1L2PathQpSettings;
 
@@ -38,8 +38,8 @@ typedef struct L1L2PathQpReport {
 L1L2PathQp *l1l2_path_qp_create(int max_cols, int max_rows, int max_entries);
 void l1l2_path_qp_free(L1L2PathQp *qp);
 
-/* Solve. z (cols) and the duals y (rows) hold the start on entry and the solution on return.
- * ERR_NOMEM or ERR_BACKEND where the solver could not run; OK with converged = 0 where it ran and did not arrive.
+/* Solves. z (cols) and the duals y (rows) hold the start on entry and the solution on return.
+ * ERR_NOMEM or ERR_BACKEND where the solver could not run; OK with converged = 0 where it ran and did not converge.
  * Deterministic: no clock, no randomness; no output, no signal handler. */
 L1L2StabResult l1l2_path_qp_solve(const L1L2PathQp *qp, const L1L2PathQpSettings *settings, double *z, double *y,
                              L1L2PathQpReport *report);

@@ -24,15 +24,15 @@ bool l1l2_path_schedule_next(L1L2PathSchedule *schedule, int64_t length, bool en
     return true;
 }
 
-bool l1l2_path_schedule_early(L1L2PathSchedule *schedule, int64_t length, int64_t give, L1L2PathWindow *step)
+bool l1l2_path_schedule_early(L1L2PathSchedule *schedule, int64_t length, int64_t emit, L1L2PathWindow *step)
 {
     const int64_t left = length - schedule->next;
-    if (left <= 0 || give <= 0)
+    if (left <= 0 || emit <= 0)
         return false;
     assert(left < schedule->window);
     step->first = schedule->next;
     step->count = (int)left;
-    step->emit = (int)(give < left ? give : left);
+    step->emit = (int)(emit < left ? emit : left);
     step->shared = 0;
     step->early = true;
     schedule->next += step->emit;

@@ -2,10 +2,10 @@
 /*
  * The time of the path solver alone, in ms of processor time for each window.
  *
- * Shaky pans: the predictor with its own certificate, with OSQP's check, and OSQP alone, by the length of the window and
- * the number of parameters (2 translation, 4 similarity, 6 affine).
- * A zoom of 1.5 a frame, on which nothing converges at N >= 150: the bound on the work, for windows that emit a third of
- * their frames and for windows that slide by one frame.
+ * Shaky pans: the predictor with its own certificate, with OSQP's check, and OSQP alone, by the length of the window
+ * and the number of parameters (2 translation, 4 similarity, 6 affine).
+ * A zoom of 1.5 a frame, on which nothing converges at N >= 150: the bound on the work, for windows that emit a third
+ * of their frames and for windows that slide by one frame.
  */
 #include <math.h>
 #include <stdio.h>

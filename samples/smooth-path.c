@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The path alone: reads a camera's measured motion and prints where the camera went and where the smoothed one goes.
- * No pictures: the frames are pushed with their motion and without pixels.
+ * The path alone. Reads the measured motion of a camera, and prints the camera's path and the smooth path. There are no
+ * pictures: each frame is pushed with its motion and without pixels.
  *
  *     smooth-path MOTION [lambda=L] [weights=W1,W2,W3] [crop-ratio=C] [window=N] [overlap=K] [join=blend] [rate=HZ]
  *
  *     build/samples/measure-shake --motion=motion.txt in.mp4
  *     build/samples/smooth-path motion.txt lambda=0.5 >path.txt
  *
- * MOTION: a line of "# ... WIDTHxHEIGHT", then one frame a line: t and the nine numbers of F_t, row-major, pixels,
- * origin at the centre. Output: t, then x and y of C_t's and of P_t's translation in pixels: where the frame's centre
- * goes.
+ * MOTION: a line "# ... WIDTHxHEIGHT", then one line a frame: t and the nine numbers of F_t, row-major, in pixels, with
+ * the origin at the center. Output, one line a frame: t, then x and y of the translations of C_t and P_t in pixels,
+ * which say where the frame's center goes.
  */
 #include <l1l2stab/l1l2stab.h>
 
@@ -23,7 +23,7 @@ static void complain(void *cookie, L1L2StabLogLevel level, const char *message)
     fprintf(stderr, "smooth-path: %s\n", message);
 }
 
-/* One NAME=VALUE; 0 where it is not known. */
+/* Sets one NAME=VALUE. Returns 0 where the name is not known. */
 static int set_option(L1L2StabConfig *cfg, const char *option)
 {
     double *w = cfg->weights;
@@ -37,7 +37,7 @@ static int set_option(L1L2StabConfig *cfg, const char *option)
            sscanf(option, "weights=%lf,%lf,%lf", &w[0], &w[1], &w[2]) == 3;
 }
 
-/* The size that stands at the end of the first line, after its last blank. */
+/* Reads the size at the end of the first line, after its last blank. */
 static int read_size(FILE *file, int *width, int *height)
 {
     char line[256];
@@ -77,7 +77,7 @@ static int run(FILE *file, const L1L2StabConfig *cfg)
     if (result == L1L2STAB_OK)
         result = l1l2stab_finish(s);
     if (result == L1L2STAB_OK && !feof(file)) {
-        fputs("smooth-path: a line is not t and nine numbers\n", stderr);
+        fputs("smooth-path: every line after the first must be t and nine numbers\n", stderr);
         result = L1L2STAB_ERR_ARGUMENT;
     }
     if (result == L1L2STAB_OK)
@@ -94,13 +94,13 @@ int main(int argc, char **argv)
     cfg.logger = (L1L2StabLogger){.write = complain, .max_level = L1L2STAB_LOG_WARN};
     for (int i = 2; i < argc; i++)
         if (!set_option(&cfg, argv[i])) {
-            fprintf(stderr, "smooth-path: %s is not known\n", argv[i]);
+            fprintf(stderr, "smooth-path: %s is not a known NAME=VALUE, see the head of smooth-path.c\n", argv[i]);
             return EXIT_FAILURE;
         }
     FILE *file = argc > 1 ? fopen(argv[1], "r") : NULL;
     if (!file || !read_size(file, &cfg.width, &cfg.height)) {
         fprintf(stderr, "smooth-path: %s\n", argc < 2 ? "usage: smooth-path MOTION [NAME=VALUE...]"
-                                             : file   ? "the first line has to end with WIDTHxHEIGHT"
+                                             : file   ? "the first line of the motion file must end with WIDTHxHEIGHT"
                                                       : "the motion file cannot be read");
         if (file)
             fclose(file);

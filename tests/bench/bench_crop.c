@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Kept picture against remaining shake: the smoothed path of measured camera paths by crop ratio. The default of
+ * The shake that is left, by crop ratio, on measured camera paths: kept picture against smoothness. The default of
  * crop-ratio was chosen by this table.
  *
  * usage: bench_crop MOTION...     files as in tests/reference/motion

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes windows.txt: windows, and what window_reference.py finds to be their optimum.
+"""Writes windows.txt: windows, and their optimum as window_reference.py finds it.
 
 usage: make_windows.py > windows.txt      (needs numpy, scipy and clarabel)
 
@@ -36,7 +36,7 @@ def shaken(n, rng, rms):
 
 
 def synthetic(n, rng, shake_px, pan_px, roll, zoom, model=Similarity, width=640, height=360):
-    """A camera that pans, drifts and shakes; an affine one stretches and skews by half of its zoom besides."""
+    """A camera that pans, drifts and shakes; an affine one also stretches and skews by half of its zoom."""
     diagonal, t = np.hypot(width, height), np.arange(n)
     x = pan_px * t + 20 * np.sin(t / 40 + rng.uniform(0, 6)) + shaken(n, rng, shake_px)
     y = 8 * np.sin(t / 55 + rng.uniform(0, 6)) + shaken(n, rng, shake_px)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Independent solution of the window problem (Qu & Song 2013, eq. 4 to 7), from the paper and nothing else.
+"""Independent solution of the window problem (Qu & Song 2013, eq. 4 to 7), from the paper alone.
 
-Other variables than the library's (the update transforms B_t, eq. 6, instead of the paths P_t), another solver
-(Clarabel; HiGHS where lambda is 0) and general sparse matrices, for each of the motion models. Unit: the frame's
-diagonal; the linear part at half weight in both norms.
-Needs numpy, scipy and clarabel; not needed to build or test the library.
+It shares nothing with the library. Its variables are the update transforms B_t (eq. 6) instead of the paths P_t, its
+solver is Clarabel (HiGHS where lambda is 0), and its matrices are general sparse ones. It knows each motion model.
+Unit: the frame's diagonal. The linear part has half the weight in both norms.
+It needs numpy, scipy and clarabel. The library's build and tests do not need it.
 """
 import numpy as np
 import scipy.optimize

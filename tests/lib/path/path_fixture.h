@@ -18,7 +18,7 @@ typedef struct Run {
     int frames;
     L1L2Mat F[MAX_FRAMES];
     bool starts[MAX_FRAMES];
-    int hurry[MAX_FRAMES]; /* frames that are let go after frame t has come, of those that are held */
+    int hurry[MAX_FRAMES]; /* how many of the held frames are hurried after frame t was pushed */
     L1L2PathFrame out[MAX_FRAMES]; /* the path's rows: frame t is in row t */
 } Run;
 
@@ -67,7 +67,7 @@ static inline bool pull(L1L2Path *path, const Run *r, int t)
     return frame != NULL;
 }
 
-/* Pushes all frames, pulling as the stabilizer does: frame t once frame t + N - 1 has come, or when it is hurried. */
+/* Pushes all frames, pulling as the stabilizer does: frame t when frame t + N - 1 was pushed, or when it is hurried. */
 static inline void run(const Setup *setup, Run *r)
 {
     L1L2Path *path = new_path(setup, r);
@@ -102,8 +102,9 @@ static inline double uniform(L1L2Rng *rng, double low, double high)
     return low + (high - low) * (l1l2_rng_next(rng) / 4294967296.0);
 }
 
-/* A pan that wanders, with a shake: each frame's pose is the pan's plus noise; F from pose to pose. Px at 640x360. */
-static inline Run *wandering_run(int frames, double pan_px, double wander_px, double shake_px, uint64_t seed)
+/* A pan that drifts, with a shake: each frame's pose is that of the pan plus noise. F is from pose to pose. Unit of the
+ * arguments: pixels at 640x360. */
+static inline Run *drifting_run(int frames, double pan_px, double drift_px, double shake_px, uint64_t seed)
 {
     Run *r = new_run(frames);
     L1L2Rng rng = l1l2_rng_seeded(seed);
@@ -114,8 +115,8 @@ static inline Run *wandering_run(int frames, double pan_px, double wander_px, do
         const double shake_y = uniform(&rng, -shake_px, shake_px);
         const double shake_x = uniform(&rng, -shake_px, shake_px);
         const L1L2Mat pose = l1l2_mat_similarity(cos(roll), sin(roll),
-                                                 (pan_px * t + wander_px * sin(t / 23.0) + shake_x) / diagonal_px,
-                                                 (wander_px * sin(t / 37.0) + shake_y) / diagonal_px);
+                                                 (pan_px * t + drift_px * sin(t / 23.0) + shake_x) / diagonal_px,
+                                                 (drift_px * sin(t / 37.0) + shake_y) / diagonal_px);
         L1L2Mat inverse;
         l1l2_mat_inverse(before, &inverse);
         r->F[t] = l1l2_mat_mul(inverse, pose);
@@ -126,7 +127,7 @@ static inline Run *wandering_run(int frames, double pan_px, double wander_px, do
 
 static inline Run *shaky_run(int frames, double pan_px, double shake_px, uint64_t seed)
 {
-    return wandering_run(frames, pan_px, 0.0, shake_px, seed);
+    return drifting_run(frames, pan_px, 0.0, shake_px, seed);
 }
 
 static inline double speed_px(const Run *r, int t)

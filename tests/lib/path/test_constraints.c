@@ -21,7 +21,7 @@ static bool corners_inside(const L1L2PathCropWindow *crop, const L1L2Mat *B, dou
     return true;
 }
 
-/* G2011's proximity, of [a b x; c d y] element by element. A similarity has no skew and no stretch to be bounded. */
+/* G2011's proximity, of [a b x; c d y] element by element. A similarity has no skew and no stretch. */
 static bool near_identity(const L1L2Mat *B, double slack)
 {
     const double a = B->m[0], b = B->m[1], c = B->m[3], d = B->m[4];
@@ -48,7 +48,7 @@ START_TEST(the_frame_has_a_diagonal_of_one)
 }
 END_TEST
 
-START_TEST(the_rows_say_what_the_definition_says)
+START_TEST(the_rows_hold_exactly_where_the_definition_holds)
 {
     L1L2Rng rng = l1l2_rng_seeded(7);
     for (int dim = 2; dim <= 6; dim += 2) {
@@ -64,7 +64,7 @@ START_TEST(the_rows_say_what_the_definition_says)
             l1l2_mat_inverse(C, &inverse);
             const double size = 1.0 + fabs(inverse.m[0]) + fabs(inverse.m[1]) + fabs(inverse.m[3]) + fabs(inverse.m[4]);
             if (size > 100.0)
-                continue; /* a camera that is all but flat: rounding alone decides */
+                continue; /* C is nearly singular: rounding alone would decide */
             l1l2_mat_to_q(&P, q);
             l1l2_path_constraint_rows(&crop, &C, G, lo, hi);
             for (int r = 0; r < l1l2_path_constraint_count(dim); r++) {
@@ -86,41 +86,41 @@ START_TEST(the_rows_say_what_the_definition_says)
 }
 END_TEST
 
-START_TEST(what_is_admitted_is_inside_and_what_was_inside_is_unchanged)
+START_TEST(shrinking_moves_a_map_inside_and_leaves_one_that_is_inside_unchanged)
 {
     L1L2Rng rng = l1l2_rng_seeded(8);
     for (int dim = 2; dim <= 6; dim += 2)
         for (int i = 0; i < 20000; i++) {
             const L1L2PathCropWindow crop = l1l2_path_crop_window(640, 360, uniform(&rng, 0.5, 0.99), dim);
             const L1L2Mat B = random_map(&rng, dim, 1.15, 1.0, 2.0);
-            const L1L2Mat admitted = l1l2_path_constraint_shrink(&crop, &B);
-            ck_assert(corners_inside(&crop, &admitted, 1e-12) && near_identity(&admitted, 1e-12));
-            const L1L2Mat again = l1l2_path_constraint_shrink(&crop, &admitted);
-            ck_assert_near(l1l2_mat_corner_distance(&admitted, &again, 0.5, 0.5), 0.0, 1e-12);
+            const L1L2Mat shrunk = l1l2_path_constraint_shrink(&crop, &B);
+            ck_assert(corners_inside(&crop, &shrunk, 1e-12) && near_identity(&shrunk, 1e-12));
+            const L1L2Mat again = l1l2_path_constraint_shrink(&crop, &shrunk);
+            ck_assert_near(l1l2_mat_corner_distance(&shrunk, &again, 0.5, 0.5), 0.0, 1e-12);
         }
 }
 END_TEST
 
-START_TEST(numbers_that_are_none_become_the_identity)
+START_TEST(a_map_that_is_not_finite_becomes_the_identity)
 {
     for (int dim = 2; dim <= 6; dim += 2) {
         const L1L2PathCropWindow crop = l1l2_path_crop_window(640, 360, 0.8, dim);
         const L1L2Mat B = l1l2_mat_similarity(NAN, 0.0, HUGE_VAL, 0.0);
-        const L1L2Mat admitted = l1l2_path_constraint_shrink(&crop, &B);
-        ck_assert(l1l2_mat_is_identity(&admitted));
+        const L1L2Mat shrunk = l1l2_path_constraint_shrink(&crop, &B);
+        ck_assert(l1l2_mat_is_identity(&shrunk));
     }
 }
 END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("crop");
-    TCase *tcase = tcase_create("crop");
+    Suite *suite = suite_create("constraints");
+    TCase *tcase = tcase_create("constraints");
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, the_frame_has_a_diagonal_of_one);
-    tcase_add_test(tcase, the_rows_say_what_the_definition_says);
-    tcase_add_test(tcase, what_is_admitted_is_inside_and_what_was_inside_is_unchanged);
-    tcase_add_test(tcase, numbers_that_are_none_become_the_identity);
+    tcase_add_test(tcase, the_rows_hold_exactly_where_the_definition_holds);
+    tcase_add_test(tcase, shrinking_moves_a_map_inside_and_leaves_one_that_is_inside_unchanged);
+    tcase_add_test(tcase, a_map_that_is_not_finite_becomes_the_identity);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Numbers in, numbers out: windows, joins, cuts and ends on camera paths that are known exactly. */
+/* Windows, joins, cuts and ends, on camera paths that are known exactly. */
 #include <stdio.h>
 
 #include "path/path_fixture.h"
@@ -112,7 +112,7 @@ START_TEST(the_continuous_join_has_no_seam_and_blend_is_rougher)
         Setup cfg = defaults();
         cfg.join = (L1L2StabJoin)join;
         cfg.overlap = join == L1L2STAB_JOIN_BLEND ? 30 : 100;
-        Run *r = wandering_run(1500, 0.7, 40.0, 4.0, 3);
+        Run *r = drifting_run(1500, 0.7, 40.0, 4.0, 3);
         run(&cfg, r);
         third_differences(r, cfg.window - cfg.overlap, &at_joins[join], &inside[join]);
         free(r);
@@ -132,7 +132,7 @@ START_TEST(a_cut_ends_one_path_and_starts_another)
     run(&cfg, both);
     run(&cfg, first);
     run(&cfg, second);
-    for (int t = 0; t < 500; t++) { /* as if the two were videos of their own */
+    for (int t = 0; t < 500; t++) { /* as if each were a video of its own */
         const L1L2PathFrame *alone = t < 230 ? &first->out[t] : &second->out[t - 230];
         ck_assert_mem_eq(both->out[t].B.m, alone->B.m, sizeof alone->B.m);
         ck_assert_uint_eq(both->out[t].path_index, alone->path_index);

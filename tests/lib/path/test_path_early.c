@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Frames that are let go before their window is whole: l1l2_path_hurry(). */
+/* Frames that are emitted before their window is full: l1l2_path_hurry(). */
 #include <stdio.h>
 
 #include "path/path_fixture.h"
 
-/* Hurries at random: now one frame, now a run of single ones as in a stall, now many at once. */
+/* Hurries at random: single frames, runs of single frames as in a stall, and many frames at once. */
 static void hurry_at_random(Run *r, int window, uint64_t seed)
 {
     L1L2Rng rng = l1l2_rng_seeded(seed);
@@ -48,7 +48,7 @@ static Roughness stalled(L1L2StabJoin join, int left)
 {
     Setup cfg = defaults();
     cfg.window = 60, cfg.overlap = join == L1L2STAB_JOIN_BLEND ? 12 : 40, cfg.join = join;
-    Run *r = wandering_run(1500, 0.7, 40.0, 4.0, 3);
+    Run *r = drifting_run(1500, 0.7, 40.0, 4.0, 3);
     for (int t = 100; t < r->frames; t += 100)
         r->hurry[t] = 60 - left;
     run(&cfg, r);
@@ -57,14 +57,14 @@ static Roughness stalled(L1L2StabJoin join, int left)
     return out;
 }
 
-START_TEST(hurried_at_random_nothing_is_lost_and_all_stays_inside)
+START_TEST(random_hurries_lose_no_frame_and_every_map_stays_inside)
 {
     for (int i = 0; i < 12; i++) {
         Setup cfg = defaults();
         cfg.window = 8 + 7 * i;
         cfg.join = (L1L2StabJoin)(i % 2);
         cfg.overlap = i % 2 ? cfg.window / 4 + 1 : cfg.window * 2 / 3;
-        Run *r = wandering_run(300, 1.0, 20.0, 6.0, (uint64_t)i + 1);
+        Run *r = drifting_run(300, 1.0, 20.0, 6.0, (uint64_t)i + 1);
         r->starts[120] = true;
         hurry_at_random(r, cfg.window, (uint64_t)i + 77);
         run(&cfg, r);
@@ -83,11 +83,11 @@ START_TEST(hurried_at_random_nothing_is_lost_and_all_stays_inside)
 }
 END_TEST
 
-START_TEST(what_is_decided_already_is_not_decided_anew)
+START_TEST(a_frame_that_is_decided_is_not_decided_again)
 {
-    /* A window of 150 decides 50 frames. Hurrying of these alone lets them go, and changes nothing. */
+    /* A window of 150 decides 50 frames. Hurrying these alone emits them and changes nothing. */
     const Setup cfg = defaults();
-    Run *plain = wandering_run(400, 1.0, 20.0, 6.0, 4), *hurried = wandering_run(400, 1.0, 20.0, 6.0, 4);
+    Run *plain = drifting_run(400, 1.0, 20.0, 6.0, 4), *hurried = drifting_run(400, 1.0, 20.0, 6.0, 4);
     hurried->hurry[149] = 49;
     run(&cfg, plain);
     run(&cfg, hurried);
@@ -100,13 +100,13 @@ START_TEST(what_is_decided_already_is_not_decided_anew)
 }
 END_TEST
 
-START_TEST(an_early_frame_is_the_optimum_of_what_has_come)
+START_TEST(an_early_frame_is_the_optimum_of_the_frames_that_have_arrived)
 {
     /* Given out early, of 60 frames: as if the stream had ended there. If it then does end, what was kept back is the
      * optimum too: the frames that were given out bind it to the same one. */
     const Setup cfg = defaults();
     for (int given = 1; given <= 60; given += 7) {
-        Run *ended = wandering_run(60, 1.0, 20.0, 6.0, 4), *early = wandering_run(60, 1.0, 20.0, 6.0, 4);
+        Run *ended = drifting_run(60, 1.0, 20.0, 6.0, 4), *early = drifting_run(60, 1.0, 20.0, 6.0, 4);
         run(&cfg, ended);
         early->hurry[59] = given;
         run(&cfg, early);
@@ -125,7 +125,7 @@ END_TEST
 
 START_TEST(a_hurried_path_is_smooth)
 {
-    Run *walk = wandering_run(1500, 0.7, 40.0, 4.0, 3);
+    Run *walk = drifting_run(1500, 0.7, 40.0, 4.0, 3);
     const Roughness camera = roughness(walk, true);
     printf("third difference, px/frame^3, mean and worst: camera %.3f %.3f\n", camera.mean, camera.worst);
     for (int join = 0; join < 2; join++) {
@@ -135,7 +135,7 @@ START_TEST(a_hurried_path_is_smooth)
             printf("  %s, stalls leave %2d frames of 60: %.4f %.3f\n", join ? "blend" : "continuous", 60 - 30 * i,
                    r[i].mean, r[i].worst);
         }
-        /* With half the look-ahead nearly as smooth as ever; with none what is left of the shake is still little. */
+        /* With half the look-ahead the path is nearly as smooth; with none, little of the shake is left. */
         ck_assert_double_le(r[1].mean, 1.25 * r[0].mean);
         ck_assert_double_le(r[1].worst, 1.25 * r[0].worst);
         ck_assert_double_le(r[2].mean, 0.01 * camera.mean);
@@ -150,7 +150,7 @@ START_TEST(after_a_stall_a_pan_has_its_speed_again)
     const Setup cfg = defaults();
     Run *r = shaky_run(900, 1.0, 0.0, 1);
     for (int t = 300; t < 310; t++)
-        r->hurry[t] = t < 309 ? 15 : 150; /* all that was held */
+        r->hurry[t] = t < 309 ? 15 : 150; /* all that were held */
     run(&cfg, r);
     ck_assert(r->out[309].early && !r->out[310].early);
     for (int t = 345; t < 750; t++)
@@ -163,7 +163,7 @@ START_TEST(a_reset_forgets_that_frames_were_hurried)
 {
     Setup cfg = defaults();
     cfg.join = L1L2STAB_JOIN_BLEND, cfg.window = 40, cfg.overlap = 10;
-    Run *fresh = wandering_run(120, 1.0, 20.0, 6.0, 6), *again = new_run(120);
+    Run *fresh = drifting_run(120, 1.0, 20.0, 6.0, 6), *again = new_run(120);
     run(&cfg, fresh);
     L1L2Path *path = new_path(&cfg, again);
     for (int t = 0; t < 20; t++)
@@ -187,9 +187,9 @@ int main(void)
     Suite *suite = suite_create("path_early");
     TCase *tcase = tcase_create("path_early");
     tcase_set_timeout(tcase, 60);
-    tcase_add_test(tcase, hurried_at_random_nothing_is_lost_and_all_stays_inside);
-    tcase_add_test(tcase, what_is_decided_already_is_not_decided_anew);
-    tcase_add_test(tcase, an_early_frame_is_the_optimum_of_what_has_come);
+    tcase_add_test(tcase, random_hurries_lose_no_frame_and_every_map_stays_inside);
+    tcase_add_test(tcase, a_frame_that_is_decided_is_not_decided_again);
+    tcase_add_test(tcase, an_early_frame_is_the_optimum_of_the_frames_that_have_arrived);
     tcase_add_test(tcase, a_hurried_path_is_smooth);
     tcase_add_test(tcase, after_a_stall_a_pan_has_its_speed_again);
     tcase_add_test(tcase, a_reset_forgets_that_frames_were_hurried);

@@ -71,7 +71,7 @@ static void add_clip(const char *name, Setup cfg, Roughness *all)
     free(r);
 }
 
-START_TEST(joins_of_real_paths_are_no_rougher_than_what_lies_between)
+START_TEST(joins_of_real_paths_are_no_rougher_than_the_path_between_them)
 {
     Roughness blend = {{0}, {0}, {0}}, continuous = {{0}, {0}, {0}};
     Setup cfg = defaults();
@@ -90,7 +90,7 @@ START_TEST(joins_of_real_paths_are_no_rougher_than_what_lies_between)
                rows[i]->worst[0], rows[i]->count[1] / 3);
     ck_assert_int_ge(continuous.count[1] / 3, 20);
     ck_assert_double_le(continuous.worst[1], continuous.worst[0]);
-    /* By their mean they are alike: new frames at a join bend a path as much as anything else does. */
+    /* In the mean they are alike: the new frames at a join bend a path no more than other frames do. */
     ck_assert_double_le(continuous.sum[1] / continuous.count[1], 1.1 * continuous.sum[0] / continuous.count[0]);
     ck_assert_double_le(5.0 * continuous.sum[1] / continuous.count[1], blend.sum[1] / blend.count[1]);
 }
@@ -101,7 +101,7 @@ int main(void)
     Suite *suite = suite_create("path_joins");
     TCase *tcase = tcase_create("path_joins");
     tcase_set_timeout(tcase, 60);
-    tcase_add_test(tcase, joins_of_real_paths_are_no_rougher_than_what_lies_between);
+    tcase_add_test(tcase, joins_of_real_paths_are_no_rougher_than_the_path_between_them);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Whatever comes in, every update transform is inside its limits; and knobs that change on the way. */
+/* Extreme motions, and parameters that change while running: every update transform meets its constraints, and the
+ * work of a solve is bounded. */
 #include "path/path_fixture.h"
 
 START_TEST(every_update_transform_stays_inside_whatever_the_motion)
@@ -23,7 +24,7 @@ START_TEST(every_update_transform_stays_inside_whatever_the_motion)
 }
 END_TEST
 
-START_TEST(numbers_that_no_camera_gives_are_survived)
+START_TEST(motions_that_no_camera_makes_give_finite_maps_inside)
 {
     const Setup cfg = defaults();
     const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, 4);
@@ -38,7 +39,7 @@ START_TEST(numbers_that_no_camera_gives_are_survived)
         fallbacks += r->out[t].fallback;
     }
     ck_assert_int_gt(fallbacks, 0);
-    ck_assert(!r->out[399].fallback); /* and recovered from */
+    ck_assert(!r->out[399].fallback); /* the path has recovered */
     free(r);
 }
 END_TEST
@@ -71,7 +72,7 @@ START_TEST(where_no_solver_converges_the_path_goes_on_without_a_jump)
 }
 END_TEST
 
-START_TEST(a_crop_that_changes_is_ramped_and_always_met)
+START_TEST(a_crop_ratio_that_changes_is_ramped_and_always_met)
 {
     Setup cfg = defaults();
     Run *r = shaky_run(500, 1.0, 5.0, 4);
@@ -82,7 +83,7 @@ START_TEST(a_crop_that_changes_is_ramped_and_always_met)
         if (t == 200)
             cfg.crop_ratio = 0.6;
         if (t == 215)
-            cfg.crop_ratio = 0.95; /* on the way */
+            cfg.crop_ratio = 0.95; /* during the ramp */
         if (t < r->frames)
             push(path, &cfg, &r->F[t], false);
         else if (t == r->frames)
@@ -107,7 +108,7 @@ START_TEST(a_crop_that_changes_is_ramped_and_always_met)
 }
 END_TEST
 
-START_TEST(lambda_travels_with_the_frames_it_was_set_for)
+START_TEST(lambda_belongs_to_the_frames_that_it_was_set_for)
 {
     Setup cfg = defaults();
     Run *r = shaky_run(600, 0.5, 5.0, 4);
@@ -125,13 +126,13 @@ START_TEST(lambda_travels_with_the_frames_it_was_set_for)
         ck_assert_near(r->out[t].lambda, t < 300 ? 0.5 : 100.0, 0.0);
         left[t >= 300] += fabs(speed_px(r, t) - speed_px(r, t - 1));
     }
-    ck_assert_double_gt(left[1] / (pulled - 300), 5.0 * left[0] / 298); /* the rest follows the shake */
+    ck_assert_double_gt(left[1] / (pulled - 300), 5.0 * left[0] / 298); /* it follows the shake */
     l1l2_path_free(path);
     free(r);
 }
 END_TEST
 
-START_TEST(a_motion_that_is_none_counts_as_still)
+START_TEST(a_motion_that_is_not_finite_or_not_invertible_counts_as_no_motion)
 {
     const Setup cfg = defaults();
     Run *r = shaky_run(300, 1.0, 4.0, 8);
@@ -149,7 +150,7 @@ START_TEST(a_zoom_of_ten_and_jumps_of_half_a_frame_are_solved)
 {
     const Setup cfg = defaults();
     const L1L2PathCropWindow crop = l1l2_path_crop_window(cfg.width, cfg.height, cfg.crop_ratio, 4);
-    Run *zoom = wandering_run(450, 0.5, 10.0, 3.0, 5), *jumps = shaky_run(450, 0.5, 3.0, 5);
+    Run *zoom = drifting_run(450, 0.5, 10.0, 3.0, 5), *jumps = shaky_run(450, 0.5, 3.0, 5);
     for (int t = 100; t < 250; t++)
         zoom->F[t] = l1l2_mat_mul(zoom->F[t], l1l2_mat_similarity(pow(10.0, 1.0 / 150.0), 0.0, 0.0, 0.0));
     for (int t = 20; t < 450; t += 37)
@@ -203,11 +204,11 @@ int main(void)
     TCase *tcase = tcase_create("path_limits");
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, every_update_transform_stays_inside_whatever_the_motion);
-    tcase_add_test(tcase, numbers_that_no_camera_gives_are_survived);
+    tcase_add_test(tcase, motions_that_no_camera_makes_give_finite_maps_inside);
     tcase_add_test(tcase, where_no_solver_converges_the_path_goes_on_without_a_jump);
-    tcase_add_test(tcase, a_crop_that_changes_is_ramped_and_always_met);
-    tcase_add_test(tcase, lambda_travels_with_the_frames_it_was_set_for);
-    tcase_add_test(tcase, a_motion_that_is_none_counts_as_still);
+    tcase_add_test(tcase, a_crop_ratio_that_changes_is_ramped_and_always_met);
+    tcase_add_test(tcase, lambda_belongs_to_the_frames_that_it_was_set_for);
+    tcase_add_test(tcase, a_motion_that_is_not_finite_or_not_invertible_counts_as_no_motion);
     tcase_add_test(tcase, a_zoom_of_ten_and_jumps_of_half_a_frame_are_solved);
     tcase_add_test(tcase, a_window_that_does_not_converge_costs_a_bounded_number_of_iterations);
     suite_add_tcase(suite, tcase);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Camera paths of translations and of affine maps, and how the models lie within each other. */
+/* Camera paths of translations and of affine maps, and how the models contain each other. */
 #include "path/path_fixture.h"
 
-/* A wandering pan whose poses turn, zoom, stretch and skew at random, by `linear` each. */
+/* A drifting pan whose poses turn, zoom, stretch and skew at random, by `linear` each. */
 static Run *affine_run(int frames, double linear, uint64_t seed)
 {
-    Run *r = wandering_run(frames, 0.7, 30.0, 4.0, seed);
+    Run *r = drifting_run(frames, 0.7, 30.0, 4.0, seed);
     L1L2Rng rng = l1l2_rng_seeded(seed + 100);
     L1L2Mat before = l1l2_mat_identity(), inverse;
     for (int t = 0; t < frames; t++) {
@@ -80,15 +80,15 @@ START_TEST(a_translation_never_turns_or_zooms_the_picture)
 }
 END_TEST
 
-/* The norms of a richer model are the poorer one's where a camera moves by the poorer one alone. So while no limit is
- * touched, where the richer one could buy room with what the poorer one has not, the optimum is the same. */
-START_TEST(a_richer_model_gives_the_same_path_to_a_poorer_camera)
+/* For a camera that moves by a simpler model, a richer model has the same norms. So the optimum is the same while no
+ * constraint is active. Where one is, the richer model could gain room by a motion that the simpler one lacks. */
+START_TEST(a_richer_model_gives_the_same_path_to_a_simpler_camera)
 {
     for (int model = L1L2STAB_MOTION_MODEL_TRANSLATION; model < L1L2STAB_MOTION_MODEL_AFFINE; model++) {
         Setup poor = config_of((L1L2StabMotionModel)model, L1L2STAB_JOIN_CONTINUOUS), rich = poor;
         poor.crop_ratio = rich.crop_ratio = 0.7;
         rich.model = (L1L2StabMotionModel)(model + 1);
-        Run *a = wandering_run(300, 0.5, 10.0, 3.0, 5), *b = wandering_run(300, 0.5, 10.0, 3.0, 5);
+        Run *a = drifting_run(300, 0.5, 10.0, 3.0, 5), *b = drifting_run(300, 0.5, 10.0, 3.0, 5);
         for (int t = 0; t < a->frames; t++)
             a->F[t] = b->F[t] = l1l2_mat_reduce(&a->F[t], l1l2_mat_dim(poor.model));
         run(&poor, a);
@@ -100,7 +100,7 @@ START_TEST(a_richer_model_gives_the_same_path_to_a_poorer_camera)
 }
 END_TEST
 
-START_TEST(what_only_an_affine_map_can_say_is_smoothed_too)
+START_TEST(stretch_and_skew_are_smoothed_too)
 {
     const Setup cfg = config_of(L1L2STAB_MOTION_MODEL_AFFINE, L1L2STAB_JOIN_CONTINUOUS);
     Run *r = affine_run(300, 0.004, 9);
@@ -145,8 +145,8 @@ int main(void)
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, every_map_is_of_the_model_and_inside);
     tcase_add_test(tcase, a_translation_never_turns_or_zooms_the_picture);
-    tcase_add_test(tcase, a_richer_model_gives_the_same_path_to_a_poorer_camera);
-    tcase_add_test(tcase, what_only_an_affine_map_can_say_is_smoothed_too);
+    tcase_add_test(tcase, a_richer_model_gives_the_same_path_to_a_simpler_camera);
+    tcase_add_test(tcase, stretch_and_skew_are_smoothed_too);
     tcase_add_test(tcase, where_no_solver_converges_every_model_holds_a_path_inside);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);

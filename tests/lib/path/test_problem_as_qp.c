@@ -57,7 +57,7 @@ static void check_bijections(const L1L2PathProblem *p)
     free(row_seen);
 }
 
-START_TEST(columns_and_rows_are_bijections)
+START_TEST(every_column_and_row_has_one_place)
 {
     for (int dim = 2; dim <= 6; dim += 2)
         for (int count = 1; count <= 9; count++)
@@ -80,7 +80,7 @@ START_TEST(terms_reach_no_further_back_than_the_history)
 }
 END_TEST
 
-START_TEST(columns_are_sorted_and_within_their_room)
+START_TEST(columns_are_sorted_and_fit_the_arrays)
 {
     for (int round = 0; round < 144; round++) {
         const int dim = 2 + 2 * (round % 3), count = 1 + round / 12, history = round / 3 % 4;
@@ -100,9 +100,9 @@ START_TEST(columns_are_sorted_and_within_their_room)
 }
 END_TEST
 
-/* With every slack at |D^k q| the program's objective is eq. (4) less its constant, its term rows just hold, and its
- * crop rows hold where the problem's do. */
-START_TEST(the_program_says_what_the_problem_says)
+/* Let every slack be |D^k q|. Then the program's objective is eq. (4) less its constant, its term rows hold with
+ * equality, and its constraint rows hold where the problem's do. */
+START_TEST(the_program_has_the_objective_and_constraints_of_the_problem)
 {
     L1L2Rng rng = l1l2_rng_seeded(11);
     for (int round = 0; round < 120; round++) {
@@ -136,7 +136,7 @@ START_TEST(the_program_says_what_the_problem_says)
         ck_assert_near(objective, l1l2_path_objective(p, cq), 1e-12);
         double crop_worst = -1.0;
         const int first_crop = l1l2_path_qp_row_constraint(p, 0, 0);
-        for (int r = 0; r < first_crop; r += 2) /* one side of each pair is active, none is broken */
+        for (int r = 0; r < first_crop; r += 2) /* one side of each pair is active, none is violated */
             ck_assert_near(fmax(Az[r] - qp->upper[r], Az[r + 1] - qp->upper[r + 1]), 0.0, 1e-10);
         for (int r = first_crop; r < qp->rows; r++)
             crop_worst = fmax(crop_worst, fmax(Az[r] - qp->upper[r], qp->lower[r] - Az[r]));
@@ -152,13 +152,13 @@ END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("path_qp");
-    TCase *tcase = tcase_create("path_qp");
+    Suite *suite = suite_create("problem_as_qp");
+    TCase *tcase = tcase_create("problem_as_qp");
     tcase_set_timeout(tcase, 60);
-    tcase_add_test(tcase, columns_and_rows_are_bijections);
+    tcase_add_test(tcase, every_column_and_row_has_one_place);
     tcase_add_test(tcase, terms_reach_no_further_back_than_the_history);
-    tcase_add_test(tcase, columns_are_sorted_and_within_their_room);
-    tcase_add_test(tcase, the_program_says_what_the_problem_says);
+    tcase_add_test(tcase, columns_are_sorted_and_fit_the_arrays);
+    tcase_add_test(tcase, the_program_has_the_objective_and_constraints_of_the_problem);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

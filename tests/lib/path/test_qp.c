@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The seam to OSQP: small programs whose solutions are known, and memory that runs out at every place. */
+/* The interface to OSQP: a small program with a known solution, a bound on iterations, and allocations that fail. */
 #include <string.h>
 
 #include "checkx.h"
@@ -29,7 +29,7 @@ static const L1L2MemHook hook = {counting_alloc, counting_free};
 
 static const L1L2PathQpSettings settings = {.max_iterations = 1000, .rho = 1.0, .tolerance = 1e-6};
 
-/* Minimize sum (z_i - i)^2 with z_i + z_{i+1} <= 6: the rows bind from z_3 on. */
+/* Minimize sum (z_i - i)^2 with z_i + z_{i+1} <= 6: from z_3 on the rows are active. */
 static L1L2PathQp *chain(void)
 {
     L1L2PathQp *qp = l1l2_path_qp_create(SIZE, SIZE - 1, 2 * SIZE);

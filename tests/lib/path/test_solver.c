@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The optimum: against its conditions (KKT), and against the independent solutions of tests/reference/windows.txt. */
+/* The optimum, compared with its conditions (KKT) and with the independent solutions of tests/reference/windows.txt. */
 #include <stdio.h>
 #include <string.h>
 
@@ -101,7 +101,7 @@ static void against_the_reference(L1L2StabSolver choice, double relative, double
             ck_assert_msg(report.converged, "%s, lambda %g: not converged, bound %g", w.name, lambda, report.bound);
             ck_assert_msg(fabs(found - objective) <= relative * objective + 1e-9,
                           "%s, lambda %g: objective %.12g, reference %.12g", w.name, lambda, found, objective);
-            ck_assert_msg(report.excess <= 1e-6, "%s, lambda %g: a crop row is broken by %g", w.name, lambda,
+            ck_assert_msg(report.excess <= 1e-6, "%s, lambda %g: a constraint is violated by %g", w.name, lambda,
                           report.excess);
             while (fscanf(file, " P %d", &t) == 1 && read_map(file, w.dim, map)) {
                 const L1L2Mat expected = mat(w.dim, map);
@@ -114,7 +114,7 @@ static void against_the_reference(L1L2StabSolver choice, double relative, double
         }
     fclose(file);
     printf("windows of translations, similarities, affine maps: %d, %d, %d, x 8 lambdas; OSQP accepted at its first "
-           "check: %d of %d\n", windows[0], windows[1], windows[2], at_first_check, checked);
+           "test: %d of %d\n", windows[0], windows[1], windows[2], at_first_check, checked);
     ck_assert(windows[0] >= 5 && windows[1] >= 40 && windows[2] >= 10);
     if (choice == L1L2STAB_SOLVER_CHECKED)
         ck_assert_int_ge(100 * at_first_check, 95 * checked);
@@ -149,7 +149,7 @@ static void random_walk(Window *w, int dim, uint64_t seed, int count, int histor
     }
 }
 
-/* What makes a point the optimum, each checked here from the problem's definition. */
+/* The conditions of an optimum, each checked from the problem's definition. */
 static void check_kkt(const L1L2PathProblem *p, const L1L2PathPoint *point)
 {
     const double(*q)[L1L2_DIM] = (const double(*)[L1L2_DIM])point->q;
@@ -274,8 +274,9 @@ static void describe_long(L1L2PathProblem *p, uint64_t seed)
     }
 }
 
-/* Beyond the last digit of a long window a step may end in numbers that are none: the next window must not see them. */
-START_TEST(a_window_does_not_see_where_the_one_before_it_gave_out)
+/* Near the limit of double precision the last step of a long window may not be finite. The next window must not see
+ * it. */
+START_TEST(a_window_does_not_depend_on_how_the_window_before_it_ended)
 {
     L1L2PathProblem *p = l1l2_path_problem_create(900, 4);
     L1L2PathInteriorPoint *fresh = l1l2_path_interior_point_create(900, 4),
@@ -298,15 +299,15 @@ END_TEST
 
 int main(void)
 {
-    Suite *suite = suite_create("path_solver");
-    TCase *tcase = tcase_create("path_solver");
+    Suite *suite = suite_create("solver");
+    TCase *tcase = tcase_create("solver");
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, the_checked_predictor_finds_the_reference_optimum);
     tcase_add_test(tcase, the_predictor_alone_finds_the_reference_optimum);
     tcase_add_test(tcase, the_predictor_meets_the_conditions_of_an_optimum);
     tcase_add_test(tcase, osqp_alone_comes_near_the_optimum);
     tcase_add_test(tcase, the_same_window_gives_the_same_bits);
-    tcase_add_test(tcase, a_window_does_not_see_where_the_one_before_it_gave_out);
+    tcase_add_test(tcase, a_window_does_not_depend_on_how_the_window_before_it_ended);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

@@ -23,6 +23,7 @@ typedef struct L1L2QueuedFrame {
     double quality;
     bool failed;                 /* measuring met an error */
     L1L2PathFrame path;          /* motion F, in diagonals, and what the path makes of it */
+    double F_px[9];              /* the same motion as the caller sees it (units.h) */
     int64_t scale_ns, track_ns, fit_ns, solve_ns;
 } L1L2QueuedFrame;
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "info.h"
 
+#include <string.h>
+
 #include "units.h"
 
 static unsigned flags_of(const L1L2QueuedFrame *record)
@@ -37,7 +39,7 @@ void l1l2_info_describe(L1L2StabInfo *info, const L1L2QueuedFrame *record, doubl
         .flags = flags_of(record),
         .stage_ns = {record->scale_ns, record->track_ns, record->fit_ns, record->solve_ns},
     };
-    l1l2_units_export_motion(&path->F, diagonal_px, info->F);
+    memcpy(info->F, record->F_px, sizeof info->F);
     l1l2_units_export(&path->B, diagonal_px, info->B);
     l1l2_units_export(&path->S, diagonal_px, info->S);
 }

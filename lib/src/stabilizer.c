@@ -162,16 +162,18 @@ static void add_solve_time(L1L2Stab *s, int64_t start_ns)
     l1l2_frame_queue_oldest(&s->queue)->solve_ns += l1l2_clock_ns() - start_ns;
 }
 
-/* Steps 2b and 3 for the newest frame, whose motion is known. */
-static void extend_path(L1L2Stab *s, const L1L2MotionResult *motion)
+/* Steps 2b and 3 for the newest frame, whose motion is known: in pixels in F_px, all else in *motion. */
+static void extend_path(L1L2Stab *s, const L1L2MotionResult *motion, const double F_px[9])
 {
     L1L2QueuedFrame *record = l1l2_frame_queue_newest(&s->queue);
+    const L1L2Mat F = l1l2_units_import(F_px, s->diagonal_px);
     const L1L2PathInput input = {
-        .F = &motion->F,
+        .F = &F,
         .starts_path = motion->model == L1L2STAB_MOTION_SOURCE_NONE,
         .lambda = record->lambda,
         .crop_ratio = record->crop_ratio,
     };
+    memcpy(record->F_px, F_px, sizeof record->F_px);
     record->source = motion->model;
     record->tracks = motion->tracks;
     record->inliers = motion->inliers;
@@ -188,14 +190,15 @@ static void extend_path(L1L2Stab *s, const L1L2MotionResult *motion)
 
 /* The path with a frame whose motion the caller gave. Such frames are not tracked: a measured one after them starts
  * from nothing. */
-static void extend_path_as_given(L1L2Stab *s, const double motion_px[9], bool starts_path)
+static void extend_path_as_given(L1L2Stab *s, const double given_px[9], bool starts_path)
 {
-    l1l2_motion_worker_reset(s->worker);
-    extend_path(s, &(L1L2MotionResult){
-        .F = starts_path ? l1l2_mat_identity() : l1l2_units_import_motion(motion_px, s->diagonal_px),
+    const L1L2Mat none = l1l2_mat_identity();
+    const L1L2MotionResult motion = {
         .model = starts_path ? L1L2STAB_MOTION_SOURCE_NONE : L1L2STAB_MOTION_SOURCE_GIVEN,
         .quality = starts_path ? 0.0 : 1.0,
-    });
+    };
+    l1l2_motion_worker_reset(s->worker);
+    extend_path(s, &motion, starts_path ? none.m : given_px);
 }
 
 /* Waits for the newest frame's motion, if it is being measured, and extends the path by it. A frame that could not be
@@ -206,9 +209,7 @@ static void settle(L1L2Stab *s)
         return;
     L1L2MotionResult motion;
     const L1L2StabResult result = l1l2_motion_worker_take(s->worker, &motion);
-    if (result == L1L2STAB_OK) {
-        motion.F = l1l2_units_exact_motion(&motion.F, s->diagonal_px);
-    } else {
+    if (result != L1L2STAB_OK) {
         l1l2_log(&s->cfg.logger, L1L2STAB_LOG_ERROR,
                  "the motion of frame %lld could not be measured: %s. A new path starts there",
                  (long long)s->queue.end - 1, l1l2stab_strerror(result));
@@ -217,7 +218,9 @@ static void settle(L1L2Stab *s)
         if (s->error == L1L2STAB_OK)
             s->error = result;
     }
-    extend_path(s, &motion);
+    double F_px[9];
+    l1l2_units_export(&motion.F, s->diagonal_px, F_px);
+    extend_path(s, &motion, F_px);
 }
 
 L1L2StabResult l1l2stab_take_error(L1L2Stab *s)

@@ -192,6 +192,27 @@ START_TEST(every_number_stays_finite_however_long_a_motion_goes_on)
 }
 END_TEST
 
+START_TEST(a_given_motion_is_reported_as_it_was_given_to_the_bit)
+{
+    const L1L2StabConfig cfg = small_config(4);
+    L1L2Stab *s = create_logged(cfg);
+    L1L2Rng rng = l1l2_rng_seeded(1);
+    static double given[2000][9];
+    L1L2StabInfo info;
+    for (int t = 0; t < 2000; t++) {
+        const double a = 1.0 + l1l2_rng_next(&rng) * 0x1p-34, b = l1l2_rng_next(&rng) * 0x1p-34;
+        const double x = l1l2_rng_next(&rng) / 3e8 - 7.0, y = t - 1000;
+        const double m[9] = {a, -b, x, b, a, y, 0.0, 0.0, 1.0};
+        memcpy(given[t], m, sizeof m);
+        const L1L2StabFrame in = {.motion = given[t]};
+        ck_assert_int_eq(l1l2stab_push(s, &in), L1L2STAB_OK);
+        if (l1l2stab_pull(s, NULL, &info) == L1L2STAB_OK && info.index > 0)
+            ck_assert_mem_eq(info.F, given[info.index], sizeof info.F);
+    }
+    l1l2stab_free(&s);
+}
+END_TEST
+
 /* Runs a clip, and gives its infos. */
 static void run(L1L2Stab *s, Clip *clip, L1L2StabInfo *info)
 {
@@ -249,6 +270,7 @@ int main(void)
     tcase_add_test(tcase, info_is_written_whole_and_its_reserved_bytes_are_zero);
     tcase_add_test(tcase, two_byte_components_need_even_addresses_and_strides);
     tcase_add_test(tcase, a_given_motion_must_be_one_that_a_camera_makes);
+    tcase_add_test(tcase, a_given_motion_is_reported_as_it_was_given_to_the_bit);
     tcase_add_test(tcase, every_number_stays_finite_however_long_a_motion_goes_on);
     tcase_add_test(tcase, a_reset_keeps_live_settings_in_full_effect_as_if_set_on_a_new_instance);
     suite_add_tcase(suite, tcase);

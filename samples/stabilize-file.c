@@ -276,7 +276,9 @@ static gboolean show_progress(gpointer data)
         fail(app, "%s: no stream was found in it. Is it complete?", app->in);
         return G_SOURCE_REMOVE;
     }
-    if (frames > 0 && gst_element_query_duration(app->source, GST_FORMAT_TIME, &duration) && duration > 0) {
+    if (frames == 0)
+        return G_SOURCE_CONTINUE;
+    if (gst_element_query_duration(app->source, GST_FORMAT_TIME, &duration) && duration > 0) {
         const double reached = (double)g_atomic_int_get(&app->reached_ms) * GST_MSECOND / (double)duration;
         g_snprintf(percent, sizeof percent, "%3.0f %%, ", MIN(100.0, 100.0 * reached));
     }

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# A header, or each header below a directory, compiles alone and without a warning.
+# A header, or each header in a directory, compiles on its own and without warnings.
 # usage: check_headers.sh HEADER_OR_DIRECTORY COMPILER [OPTION...]
 set -eu
 
@@ -14,7 +14,7 @@ IFS='
 for header in $headers; do
   case $header in
     */x86/*) simd=-mavx2 ;;
-    *) simd=-Wundef ;; # nothing more
+    *) simd=-Wundef ;; # no more options are needed
   esac
   "$@" -Wall -Wextra -Wpedantic -Wundef -Werror "$simd" -fsyntax-only "$header" || status=1
 done

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The layers, checked by #include: check_layers.py TREE | check_layers.py --self-test
+"""Checks the layers by the #include lines: check_layers.py TREE | check_layers.py --self-test
 
     plugin, samples -> public header -> lib/src -> motion -> rolling_shutter -> fit, warp -> image -> common
                                             \\-> path ---------------------------------------> common
 
 Each folder of lib/src has one rule: the folders whose headers it may include. No rule points back. OpenCV, OSQP and
-GStreamer are each known in one place. A new folder has to be added here.
+GStreamer are each used in one place. A new folder has to be added here.
 """
 import re
 import sys
@@ -15,7 +15,7 @@ from pathlib import Path
 PUBLIC = 'l1l2stab/l1l2stab.h'
 SOURCE = 'lib/src'
 
-# One rule a folder of lib/src: what it may include besides itself. '.' is lib/src itself, the stabilizer.
+# The rule of each folder of lib/src: the folders that it may include besides itself. '.' is lib/src, the stabilizer.
 MAY_INCLUDE = {
     '.': {'motion', 'rolling_shutter', 'path', 'warp', 'image', 'common'},
     'motion': {'rolling_shutter', 'fit', 'image', 'common'},
@@ -27,7 +27,7 @@ MAY_INCLUDE = {
     'common': set(),
 }
 
-# Outside lib/src: the folders in which a folder's files may look for a header in quotes.
+# For each folder outside lib/src: the folders that its files may include headers from, in quotes.
 QUOTED = {
     'plugin/gstreamer': ['plugin/gstreamer'],
     'samples': ['samples', 'tests/support'],
@@ -40,7 +40,7 @@ QUOTED = {
     SOURCE: [SOURCE],
 }
 
-# What a header outside this tree is called, and who alone may include it.
+# Headers from outside the tree, and the only files that may include them.
 FOREIGN = [
     (r'opencv', r'lib/src/motion/vision_opencv\.cpp|tests/(bench/bench_|clients/|lib/motion/)opencv_.*'),
     (r'(osqp|qdldl|amd)\b', r'lib/src/path/qp_osqp\.c'),
@@ -51,7 +51,7 @@ FOREIGN = [
 
 
 def place_of(path):
-    """The entry of QUOTED that a file falls under, or None."""
+    """The entry of QUOTED that applies to a file, or None."""
     return next((place for place in QUOTED if path.is_relative_to(place) and
                  (path.parent == Path(place) or place in (SOURCE, 'tests/lib'))), None)
 
@@ -106,7 +106,7 @@ def check(tree):
 
 
 def self_test():
-    """Planted includes: each of the first list must be reported, none of the second."""
+    """Checks includes that must be reported (wrong) and includes that must not (right)."""
     wrong = [
         ('lib/src/path/path.c', 'config.h', True), ('lib/src/path/path.c', 'warp/warp.h', True),
         ('lib/src/warp/warp.c', 'path/qp.h', True), ('lib/src/common/geom.h', 'path/path.h', True),

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Rules about the text of files: check_style.py TREE | check_style.py --self-test
+"""Checks the text of files: check_style.py TREE | check_style.py --self-test
 
-No tabs, trailing blanks, control characters or Windows line ends; a final newline; SPDX first; source lines of at most
-120 columns.
+No file has tabs, trailing blanks, control characters or Windows line ends. Each ends with a newline. A source file
+begins with the SPDX line, and its lines have at most 120 columns.
 """
 import re
 import sys
@@ -28,7 +28,7 @@ def line_faults(lines):
 
 
 def faults(name, text):
-    """(line, what) of each fault of a file."""
+    """Yields the line and the description of each fault of a file."""
     suffix = Path(name).suffix
     lines = text.split('\n')
     if lines[-1] != '':
@@ -43,7 +43,7 @@ def faults(name, text):
     if source:
         for number, line in enumerate(lines, 1):
             if len(line) > MAX_COLUMNS:
-                yield number, f'{len(line)} columns, {MAX_COLUMNS} at most'
+                yield number, f'{len(line)} columns, the limit is {MAX_COLUMNS}'
 
 
 def check(tree):
@@ -61,7 +61,7 @@ def check(tree):
 
 
 def self_test():
-    """Planted faults: each has to be found; the clean file has to pass."""
+    """Checks texts with known faults, which must all be found, and clean ones, which must pass."""
     head = f'/* {SPDX} */\n'
     clean = head + 'int f(void)\n{\n    f();\n}\n'
     planted = [

@@ -1,18 +1,19 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# A shared object exports names of one prefix alone; with a header: exactly those that it declares L1L2STAB_API.
+# A shared object exports only names with one prefix. With a header, it exports exactly the functions that the header
+# declares L1L2STAB_API.
 # usage: check_symbols.sh FILE PREFIX [HEADER]
 set -eu
 
 exported=$(nm -D --defined-only "$1" | awk '{ print $3 }' | sort -u)
-strangers=$(echo "$exported" | grep -v "^$2" || true)
+others=$(echo "$exported" | grep -v "^$2" || true)
 if [ -z "$exported" ]; then
   echo "$1 exports nothing"
   exit 1
 fi
-if [ -n "$strangers" ]; then
-  echo "$1 exports what does not begin with $2:"
-  echo "$strangers"
+if [ -n "$others" ]; then
+  echo "$1 exports names that do not begin with $2:"
+  echo "$others"
   exit 1
 fi
 

@@ -8,7 +8,7 @@ set -euo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$(realpath -m "${1:-$top/build}")
 options=("${@:2}")
-overlay=$top/subprojects/packagefiles/osqp/meson.build
+overlay=$top/subprojects/packagefiles/osqp
 
 # Free disk space that is needed, in megabytes. A minimal Debian lacks about 540 packages, and apt keeps their archives.
 packages_need=1700
@@ -80,12 +80,14 @@ install_packages() {
   rm -f "$log"
 }
 
-# Meson copies our build file into OSQP's source only when it unpacks the source.
+# Meson copies our files into OSQP's source only when it unpacks the source. This does it when one of them has changed.
 refresh_overlay() {
-  local unpacked
-  unpacked=$(sed -n 's/^directory *= *//p' "$top/subprojects/osqp.wrap")
-  unpacked=$top/subprojects/$unpacked
-  [[ ! -d $unpacked ]] || cmp -s "$overlay" "$unpacked/meson.build" || cp "$overlay" "$unpacked/meson.build"
+  local file unpacked
+  unpacked=$top/subprojects/$(sed -n 's/^directory *= *//p' "$top/subprojects/osqp.wrap")
+  [[ -d $unpacked ]] || return 0
+  for file in "$overlay"/*; do
+    cmp -s "$file" "$unpacked/${file##*/}" || cp "$file" "$unpacked/"
+  done
 }
 
 # Prints the tree that the build directory was configured for. It is another one if the tree was moved or copied.

@@ -4,9 +4,9 @@
  * synthetic clips, and with the motion at the defaults.
  *
  * For each value: how many of the clips have another motion at all; the root mean square error of F_t as a part of the
- * default's, the geometric mean over the clips (0.001 px is added to each error); the worst single frame, px; frames without a measured motion and paths started, less the
- * default's; and the clip whose error changes most. Clips given as raw gray files have no truth: for them the error is
- * the distance from the motion at the defaults.
+ * default's, the geometric mean over the clips (0.001 px is added to each error); the worst single frame, px; frames
+ * without a measured motion and paths started, less the default's; and the clip whose error changes most. Clips given
+ * as raw gray files have no truth: for them the error is the distance from the motion at the defaults.
  *
  * A module takes part with a table of rows (name, value, unit, effect, evidence) and a struct of doubles in the same
  * order; add it to `tables` and, if it is not a part of the motion's configuration, to measure().

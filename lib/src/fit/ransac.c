@@ -63,8 +63,8 @@ static int draws_needed(double share, int size)
     return needed < min_draws ? min_draws : needed > max_draws ? max_draws : (int)ceil(needed);
 }
 
-/* Least squares with Tukey's weights (1 - r^2 / (2 threshold)^2)^2. At this scale an inlier at the threshold still has a
- * weight of about half. The noise of good tracks is far below the threshold; tracks near it drift or lie at another
+/* Least squares with Tukey's weights (1 - r^2 / (2 threshold)^2)^2. At this scale an inlier at the threshold still has
+ * a weight of about half. The noise of good tracks is far below the threshold; tracks near it drift or lie at another
  * depth. */
 static bool refit(L1L2StabMotionModel model, const L1L2TrackSet *tracks, const bool *inlier, L1L2Mat *fit)
 {

@@ -11,9 +11,9 @@
 #include "common/rng.h"
 #include "fit/point_pairs.h"
 
-/* Fits the map `from` -> `to` whose inliers have the largest sum of consensus weights, then refits it on them.
- * inlier: tracks->count flags, written. The unit is the pairs'. Returns the number of inliers. Returns 0 and the identity
- * if no map exists: too few pairs, all points in one place or on one line, or none that is finite. */
+/* Fits the map `from` -> `to` whose inliers have the largest sum of consensus weights, then refits it on them. inlier:
+ * tracks->count flags, written. The unit is the pairs'. Returns the number of inliers. Returns 0 and the identity if no
+ * map exists: too few pairs, all points in one place or on one line, or none that is finite. */
 int l1l2_ransac(L1L2StabMotionModel model, const L1L2TrackSet *tracks, bool *inlier, L1L2Mat *fit);
 
 #endif

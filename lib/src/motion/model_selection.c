@@ -147,8 +147,8 @@ static bool choose_candidate(L1L2ModelSelection *s, const L1L2TrackWeights *w, c
 
 /* ---- Quality: does another motion compete? ---- */
 
-/* Looks for the best motion among the outliers. rival: flags of its inliers, written. Returns its distance from F at its
- * own tracks, in rival_distance: 0 if there is none, 1 or more is another object rather than another depth. */
+/* Looks for the best motion among the outliers. rival: flags of its inliers, written. Returns how far F is from its
+ * tracks, [0, 1]: 0 if there is no rival, 1 from rival_distance on. Nearer ones are other depths of a scene. */
 static double find_rival(const L1L2ModelSelection *s, const L1L2TrackSet *tracks, const Candidate *c, bool *rival)
 {
     const L1L2MotionParameters *p = s->parameters;
@@ -195,8 +195,8 @@ static double find_quality(const L1L2ModelSelection *s, const L1L2TrackWeights *
 /* ---- The core: is one of two close motions the background's? ---- */
 
 /* The inliers may belong to two motions, each of which fits its tracks far better than the threshold requires: the
- * background's and that of a slow subject or another surface. Then F and the core become those of the first alone. Where
- * depth is continuous there are no two such motions, and F stays the mean of all inliers. */
+ * background's and that of a slow subject or another surface. Then F and the core become those of the first alone.
+ * Where depth is continuous there are no two such motions, and F stays the mean of all inliers. */
 static void find_core(const L1L2ModelSelection *s, const L1L2TrackSet *tracks, const Candidate *c, bool *core,
                       L1L2Mat *F)
 {
@@ -232,9 +232,10 @@ static void find_core(const L1L2ModelSelection *s, const L1L2TrackSet *tracks, c
  * distance R from the center, R^2 sigma^2 / (n r^2) where r^2 is the tracks' mean squared distance from the center. So
  * the error at a corner is sigma sqrt((1 + R^2 / r^2) / n) per coordinate; a translation has the first term alone.
  *
- * Residuals beyond the threshold are missing from the scatter. If a part q = n / count of the tracks are inliers, the
- * noise is larger than it seems. For residuals that fill the threshold evenly, the true scatter is larger by 1 / q; the
- * square of that, at most max_truncation since there are other outliers too, is a cautious bound.
+ * Residuals beyond the threshold are missing from the scatter, so the noise is larger than it seems. If it spreads the
+ * residuals evenly over a disc of which a part q = n / count is within the threshold, sigma is larger by 1 / sqrt(q).
+ * The factor used is q^-2, an empirical choice on the safe side, at most max_truncation since there are other outliers
+ * too.
  */
 static double standard_error(const L1L2ModelSelection *s, const L1L2TrackWeights *w, const L1L2TrackSet *tracks,
                              const Candidate *c, const L1L2Mat *F)
@@ -276,8 +277,8 @@ static L1L2Mat shrink_to_significant(const L1L2ModelSelection *s, const L1L2Trac
 }
 
 /* Holds a camera on a tripod still: small errors of many frames would add up to a drift. The camera counts as standing
- * still while the decaying sum of its motions stays within what noise makes of it. A pan of a few thousandths of a pixel
- * per frame ends that. */
+ * still while the decaying sum of its motions stays within what noise makes of it. A pan of a few thousandths of a
+ * pixel per frame ends that. */
 static void hold_still(L1L2ModelSelection *s, const L1L2TrackWeights *w, L1L2Mat *F, double error)
 {
     const L1L2MotionParameters *p = s->parameters;

@@ -59,8 +59,8 @@ static void configure(L1L2Motion *m)
     m->weights = (L1L2TrackWeights){.parameters = p, .half_w = m->half_w, .half_h = m->half_h};
     m->overlay = (L1L2StaticOverlay){.parameters = p, .half_w = m->half_w, .half_h = m->half_h, .pixel = pixel};
     m->dissolve.parameters = p;
-    /* A similarity measures the translation of the whole picture best: where the camera rolls, a translation alone would
-     * fit one part of the picture in one frame and another part in the next. The result is reduced in the end. */
+    /* A similarity measures the translation of the whole picture best: where the camera rolls, a translation alone
+     * would fit one part of the picture in one frame and another part in the next. The result is reduced in the end. */
     const bool translation = m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION;
     m->selection = (L1L2ModelSelection){.parameters = p,
                                         .highest = translation ? L1L2STAB_MOTION_MODEL_SIMILARITY : m->cfg.model,
@@ -213,56 +213,34 @@ static void learn(L1L2Motion *m, const L1L2Mat *F)
 
 /* ---- Step 4, as far as it concerns two frames: the rolling-shutter residual ---- */
 
-/* A residual's fit, and the similarity that it starts from. */
+/* What the residual of a frame was fitted to, and the fit. */
 typedef struct ResidualFit {
-    bool wide;                /* no similarity was selected: it starts from one with a wide threshold */
-    L1L2Mat F;
-    bool similar[MAX_POINTS]; /* tracks that agree with F */
-    int count;                /* of the tracks that the residual is fitted to */
-    int track[MAX_POINTS];    /* which those are */
-    bool inlier[MAX_POINTS];  /* which of those agree with the fit */
-    int inliers;              /* their number, 0: there is no fit */
+    int count;               /* of the tracks that it was fitted to */
+    int track[MAX_POINTS];   /* which those are */
+    bool inlier[MAX_POINTS]; /* which of those agree with motion and residual */
+    int inliers;             /* their number */
     L1L2ShutterMeasurement step;
 } ResidualFit;
 
-/* Where rows move so differently that no similarity is selected, one with a wide threshold is good enough to begin with.
- * It takes its random numbers from a copy, so that the next frame has the same with and without step 4. */
-static bool find_wide_similarity(const L1L2Motion *m, const L1L2TrackSet *tracks, ResidualFit *fit)
-{
-    const L1L2MotionParameters *p = m->cfg.parameters;
-    L1L2Rng rng = m->rng;
-    L1L2TrackSet wide = *tracks;
-    wide.threshold *= p->wide_threshold;
-    wide.rng = &rng;
-    return l1l2_ransac(L1L2STAB_MOTION_MODEL_SIMILARITY, &wide, fit->similar, &fit->F) >=
-           p->wide_min_share * tracks->count;
-}
-
-/* Fits the residual to the tracks, except where subjects moved lately, however slowly. */
-static bool fit_residual(const L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2SelectedModel *selected,
-                         ResidualFit *fit)
+/* Fits the residual to the tracks, except where subjects moved lately, however slowly. False: there is no fit. */
+static bool fit_residual(const L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2Mat *F, ResidualFit *fit)
 {
     L1L2Pair pairs[MAX_POINTS] = {0};
-    fit->wide = selected->source < L1L2STAB_MOTION_SOURCE_SIMILARITY;
-    fit->F = selected->F;
-    fit->count = fit->inliers = 0;
-    memcpy(fit->similar, m->core, sizeof fit->similar);
-    if (fit->wide && !find_wide_similarity(m, tracks, fit))
-        return false;
+    fit->count = 0;
     for (int i = 0; i < tracks->count; i++)
         if (l1l2_motion_weights_agreement(&m->weights, tracks->pairs[i].from) >=
             m->cfg.parameters->residual_min_agreement) {
             pairs[fit->count] = tracks->pairs[i];
-            fit->inlier[fit->count] = fit->similar[i];
+            fit->inlier[fit->count] = m->core[i];
             fit->track[fit->count++] = i;
         }
-    fit->inliers = l1l2_shutter_fit(&m->shape, pairs, fit->count, tracks->threshold, fit->inlier, &fit->F, &fit->step);
+    fit->inliers = l1l2_shutter_fit(&m->shape, pairs, fit->count, tracks->threshold, fit->inlier, F, &fit->step);
     return fit->inliers > 0;
 }
 
 /* True if the fit explains each part of the tracks that it was not fitted to, in all splits. Less is required if the
  * camera's motion predicts the residuals, which tells a rolling shutter from parallax and slow subjects. */
-static bool validate_residual(const L1L2Motion *m, const L1L2TrackSet *tracks, const ResidualFit *fit)
+static bool validate_residual(const L1L2Motion *m, const ResidualFit *fit)
 {
     const L1L2MotionParameters *p = m->cfg.parameters;
     const bool by_camera = l1l2_shutter_gate_share(&m->gate) >= p->camera_share;
@@ -270,28 +248,24 @@ static bool validate_residual(const L1L2Motion *m, const L1L2TrackSet *tracks, c
     for (int split = 0; split < L1L2_SPLITS; split++)
         if (fit->step.explained[split] < required * fit->step.all[split])
             return false;
-    return !fit->wide || fit->inliers >= p->wide_min_share * tracks->count;
+    return true;
 }
 
-/* Tracks that agree with the validated residual follow the camera, too. If far more tracks agree with similarity and
- * residual than with the selected model, the similarity nearest to both becomes the frame's motion. */
+/* Tracks that agree with a validated residual follow the camera, too. If far more tracks agree with motion and residual
+ * than with the motion alone, the similarity nearest to both becomes the frame's motion. */
 static void adopt_residual(L1L2Motion *m, const L1L2TrackSet *tracks, ResidualFit *fit, L1L2SelectedModel *selected)
 {
     const L1L2MotionParameters *p = m->cfg.parameters;
-    if (fit->wide) { /* also for the tracks that the residual was not fitted to */
-        memcpy(m->inlier, fit->similar, sizeof m->inlier);
-        memcpy(m->core, fit->similar, sizeof m->core);
-    }
     for (int k = 0; k < fit->count; k++)
         m->inlier[fit->track[k]] = m->core[fit->track[k]] = fit->inlier[k];
-    const bool better = fit->inliers >= p->adopt_min_share * tracks->count &&
-                        selected->inliers < p->adopt_max_similarity * fit->inliers;
-    if (!fit->wide && !better)
+    if (fit->inliers < p->adopt_min_share * tracks->count ||
+        selected->inliers >= p->adopt_max_similarity * fit->inliers)
         return;
-    const L1L2Mat part = l1l2_shutter_residual_extract_similarity(&m->shape, &fit->step.r);
+    const L1L2Mat part = l1l2_shutter_residual_extract_similarity(&m->shape, &fit->step.r); /* which leaves the rest */
+    L1L2Mat F = selected->F;
     for (int i = 0; i < 6; i++)
-        fit->F.m[i] += part.m[i];
-    *selected = l1l2_motion_model_adopt(&m->selection, &fit->F, fit->inliers, (double)fit->inliers / tracks->count);
+        F.m[i] += part.m[i];
+    *selected = l1l2_motion_model_adopt(&m->selection, &F, fit->inliers, (double)fit->inliers / tracks->count);
 }
 
 static void measure_residual(L1L2Motion *m, const L1L2TrackSet *tracks, L1L2SelectedModel *selected,
@@ -299,12 +273,11 @@ static void measure_residual(L1L2Motion *m, const L1L2TrackSet *tracks, L1L2Sele
 {
     ResidualFit fit;
     if (m->shape.kind == L1L2STAB_ROLLING_SHUTTER_NONE || m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION ||
-        !fit_residual(m, tracks, selected, &fit))
+        selected->source < L1L2STAB_MOTION_SOURCE_SIMILARITY || !fit_residual(m, tracks, &selected->F, &fit))
         return;
-    const bool valid = validate_residual(m, tracks, &fit);
-    if (valid)
+    if (validate_residual(m, &fit))
         adopt_residual(m, tracks, &fit, selected);
-    out->has_residual = valid || !fit.wide;
+    out->has_residual = true;
     out->residual = fit.step;
 }
 

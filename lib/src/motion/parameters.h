@@ -23,7 +23,7 @@
     ROW(reselect_frames, 10, "frames", "new corners are selected this often", "Qu & Song, section 4.3") \
     ROW(point_distance, 12, "px", "minimum distance between points", \
         "Qu & Song, section 4.3, ask for one; at 20 px low-contrast frames have too few points") \
-    ROW(point_grid, 0.4, "of a square grid's spacing", "same for pictures too small for max_points that far apart", "@") \
+    ROW(point_grid, 0.4, "of a square grid's spacing", "ditto in pictures too small for that", "@") \
     ROW(min_point_distance, 3, "px", "same for tiny pictures", "@") \
     ROW(max_return_distance, 0.5, "px", "backward check: a track has to come back this close", "@") \
     ROW(backward_levels, 1, "pyramid levels", "above the picture, for the way back", \
@@ -99,8 +99,6 @@
         "a rolling shutter alone explains 0.97, parallax and slow subjects up to 0.77") \
     ROW(residual_explained_camera, 0.5, "of the residual", "ditto where the camera predicts residuals", "@") \
     ROW(camera_share, 0.3, "[0, 1]", "of the residuals that the camera has to predict for that", "@") \
-    ROW(wide_threshold, 3, "threshold", "inliers of a similarity to begin with, where none was found", "@") \
-    ROW(wide_min_share, 0.7, "of the tracks", "that one, and the residual's fit, has to have", "@") \
     ROW(adopt_min_share, 0.85, "of the tracks", "that agree with the residual: it may replace the similarity", "@") \
     ROW(adopt_max_similarity, 0.7, "of these", "that agree with the similarity: else it stays", "@")
 /* clang-format on */

@@ -35,10 +35,9 @@ static Sums shared_sums(const L1L2Thumbnail *a, Shift at_a, const L1L2Thumbnail 
 }
 
 /*
- * True if m is a mixture u a + v b of two pictures that differ. About their means, the least-squares u and v solve
- *   [aa ab; ab bb] [u; v] = [am; bm],
- * and the part of m's variance that the mixture explains is (u am + v bm) / mm. In a dissolve both parts are positive and
- * their sum is 1.
+ * True if m is a mixture u a + v b of two pictures that differ. About their means, the least-squares u and v solve [aa
+ * ab; ab bb] [u; v] = [am; bm], and the part of m's variance that the mixture explains is (u am + v bm) / mm. In a
+ * dissolve both parts are positive and their sum is 1.
  */
 static bool is_mixture(const L1L2MotionParameters *p, const Sums *s)
 {

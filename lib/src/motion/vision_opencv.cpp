@@ -5,7 +5,8 @@
  * No exception leaves this file. None of OpenCV's process-wide state (threads, parallel regions, random numbers) is
  * touched: cv::parallel_for_() marks the whole process as being inside a parallel region, so that parallel loops of the
  * application would run serially meanwhile. Only OpenCV functions that never call cv::parallel_for_() are used here;
- * tests/lib/motion/opencv_host.cpp checks that. What would call it (the pyramid, the choice of corners) is our own code.
+ * tests/lib/motion/opencv_host.cpp checks that. What would call it (the pyramid, the choice of corners) is our own
+ * code.
  */
 #include "motion/vision.h"
 
@@ -25,8 +26,8 @@
 
 namespace {
 
-/* Cells in which no corner was selected are searched again by themselves, relative to their own strongest corner: else a
- * burnt-in clock would leave a dark scene without corners. */
+/* Cells in which no corner was selected are searched again by themselves, relative to their own strongest corner: else
+ * a burnt-in clock would leave a dark scene without corners. */
 constexpr int kCellsX = 4, kCellsY = 3;
 /* A long strip keeps this many pixels of its short side, if it has them, because tracking windows have to fit in. */
 constexpr int kMinSide = 32;
@@ -108,19 +109,20 @@ bool inside(const L1L2Vision *v, cv::Point2f p)
  * picture, the previous one is given the current one's mean and contrast, unless that does not make them more alike. */
 void match_brightness(L1L2Vision *v)
 {
+    const L1L2MotionParameters *p = v->cfg.parameters;
     const int level = std::min(2, v->pyramid->levels - 1);
     const cv::Mat before = picture_of(v->previous_pyramid, level), now = picture_of(v->pyramid, level);
     cv::Scalar mean[2], deviation[2];
     cv::meanStdDev(before, mean[0], deviation[0]);
     cv::meanStdDev(now, mean[1], deviation[1]);
-    if (deviation[0][0] < v->cfg.parameters->flat_picture || deviation[1][0] < v->cfg.parameters->flat_picture)
+    if (deviation[0][0] < p->flat_picture || deviation[1][0] < p->flat_picture)
         return;
     const double gain = deviation[1][0] / deviation[0][0], offset = mean[1][0] - gain * mean[0][0];
-    if (std::abs(std::log(gain)) < v->cfg.parameters->same_contrast && std::abs(mean[1][0] - mean[0][0]) < v->cfg.parameters->same_mean)
+    if (std::abs(std::log(gain)) < p->same_contrast && std::abs(mean[1][0] - mean[0][0]) < p->same_mean)
         return;
     cv::Mat matched;
     before.convertTo(matched, CV_8U, gain, offset);
-    if (cv::norm(now, matched, cv::NORM_L1) > v->cfg.parameters->brightness_gain * cv::norm(now, before, cv::NORM_L1))
+    if (cv::norm(now, matched, cv::NORM_L1) > p->brightness_gain * cv::norm(now, before, cv::NORM_L1))
         return;
     cv::Mat base = picture_of(v->previous_pyramid, 0);
     base.convertTo(base, CV_8U, gain, offset);
@@ -254,7 +256,8 @@ std::vector<cv::Point> spread_out(const std::vector<cv::Point> &maxima, cv::Size
 }
 
 /* Shi & Tomasi's corners of one area: the smaller eigenvalue of the structure tensor over 3x3 pixels, its local maxima
- * down to a part `quality` of the strongest. The result of cv::goodFeaturesToTrack(), which calls cv::parallel_for_(). */
+ * down to a part `quality` of the strongest. The result of cv::goodFeaturesToTrack(), which calls cv::parallel_for_().
+ * */
 std::vector<cv::Point> corners_of(const cv::Mat &picture, const cv::Mat &mask, double quality, int quota,
                                   double distance)
 {

@@ -16,12 +16,12 @@ typedef struct Message {
 struct L1L2MotionWorker {
     L1L2Motion *motion;
     L1L2Pool *pool;
-    const L1L2StabLogger *log; /* the caller's, who expects messages on its own thread alone */
-    L1L2StabLogger keep;       /* what the motion gets: keeps them */
+    const L1L2StabLogger *log; /* the caller's, which is called on the caller's thread alone */
+    L1L2StabLogger keep;       /* the motion's, which keeps the messages until then */
     Message message[MAX_MESSAGES];
     int messages;
 
-    /* Of the frame that is open: belongs to the pool's thread from begin to take. */
+    /* The frame that was begun: used by the pool's thread until it is taken. */
     bool open;
     const uint8_t *data;
     ptrdiff_t stride;

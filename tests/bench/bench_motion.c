@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the library measures of synthetic clips, and what it makes of them, against their truth, at its defaults.
+ * The library on synthetic clips at its defaults: its measured motion and its stabilized output against the truth.
  *
- * error: of F_t, rms over the frame's corners, px of the frame; of all frames whose motion was measured, and the worst.
- * drift: of the product of all F_t since the shot began. lost: frames without a measured motion. starts: paths after
- * the first. jitter: rms acceleration of the camera and of what is shown of its picture, px, both by the truth.
- * Times: one core where the process is bound to one.
+ * error: of F_t, rms over the frame's corners, px; over all frames whose motion was measured, and the worst. drift: error
+ * of the product of all F_t since the shot began. lost: frames without a measured motion. starts: paths after the first.
+ * jitter: rms acceleration of the true camera and of the stabilized picture, px. Times are those of one core if the
+ * process is bound to one.
  *
  * usage: bench_motion [WIDTH [FRAMES [CASE]]]      default: 1280 300, all; CASE is part of a name
  */
@@ -16,7 +16,8 @@
 #include "synth_cases.h"
 #include "synth_trial.h"
 
-static const char *const kinds[] = {"planar, noise 5", "who holds it", "movers", "events", "repeated", "overlays"};
+static const char *const kinds[] = {"planar, noise 5", "hand-held, walking, vehicle",
+                                    "movers", "events", "repeated", "overlays"};
 
 static int ascending(const void *a, const void *b)
 {

@@ -5,7 +5,7 @@
 
 enum { W = L1L2_THUMBNAIL_W, H = L1L2_THUMBNAIL_H, MAX_SHIFT_X = W / 8, MAX_SHIFT_Y = H / 8, BLOCK = 6 };
 
-static const double min_deviation = 4.0; /* grey levels: below it is noise and compression */
+static const double min_deviation = 4.0; /* gray levels: below it is noise and compression */
 static const double same_shot = 0.5;     /* correlation; two shots of different things are around 0 */
 /* A hand before the lens leaves parts of the picture unchanged: one shot if this part of the blocks matches this well.
  * */

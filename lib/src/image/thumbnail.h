@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Thumbnails: 32x18 grey levels of a frame, and how much two of them are alike.
+ * Thumbnails: 32x18 gray levels of a frame, and how much two of them are alike.
  *
  * Two thumbnails are compared by their normalized cross-correlation, the best over small shifts. It ignores brightness
  * and contrast, so neither a flash nor a change of exposure makes two pictures differ. A picture without detail (a

@@ -239,7 +239,7 @@ static bool fit_residual(const L1L2Motion *m, const L1L2TrackSet *tracks, const 
 }
 
 /* True if the fit explains each part of the tracks that it was not fitted to, in all splits. Less is required if the
- * camera's motion predicts the residuals, which tells a rolling shutter from parallax and slow subjects. */
+ * camera's motion predicts the residuals: that distinguishes a rolling shutter from parallax and slow subjects. */
 static bool validate_residual(const L1L2Motion *m, const ResidualFit *fit)
 {
     const L1L2MotionParameters *p = m->cfg.parameters;

@@ -31,11 +31,11 @@
     ROW(corner_quality, 0.003, "of the strongest", "weaker corners are left out", \
         "at 0.01 a dark thing on snow leaves no point but its own") \
     ROW(same_contrast, 0.08, "log ratio", "smaller changes of contrast are left to the tracker", "@") \
-    ROW(same_mean, 6, "grey levels", "ditto of the mean", "@") \
-    ROW(flat_picture, 2, "grey levels", "standard deviation below which brightness is not matched", "@") \
+    ROW(same_mean, 6, "gray levels", "ditto of the mean", "@") \
+    ROW(flat_picture, 2, "gray levels", "standard deviation below which brightness is not matched", "@") \
     ROW(brightness_gain, 0.7, "of the difference", "matched pictures have to be nearer than this", "@") \
-    ROW(bar_level, 40, "grey levels", "letterbox bars are no brighter", "@") \
-    ROW(bar_range, 10, "grey levels", "and no less flat: compression noise", "@") \
+    ROW(bar_level, 40, "gray levels", "letterbox bars are no brighter", "@") \
+    ROW(bar_range, 10, "gray levels", "and no less flat: compression noise", "@") \
     /* Consensus: ransac.c, model_selection.c */ \
     ROW(inlier_distance, 1.5, "px", "tracks this close to the motion are inliers", \
         "at 1 px parallax makes the fit flicker between surfaces, at 2 px slow subjects are let in") \
@@ -81,7 +81,7 @@
     ROW(min_cell_weight, 0.2, "ratio", "weight of cells in which no track agreed lately", "@") \
     ROW(learning_rate, 0.15, "a frame", "of the cells' agreement", "@") \
     ROW(overlay_max_motion, 0.15, "px", "a track that moves less stands still", "@") \
-    ROW(overlay_min_camera, 2, "px", "camera motion beyond which that tells something", "@") \
+    ROW(overlay_min_camera, 2, "px", "camera motion from which that is evidence of an overlay", "@") \
     ROW(overlay_hits, 5, "tracks", "standing still in a cell make an overlay of it", "@") \
     ROW(overlay_max_hits, 20, "tracks", "remembered: selections of corners until it is forgotten", "@") \
     ROW(overlay_miss, 2, "tracks", "one that follows the camera counts against it", "@") \

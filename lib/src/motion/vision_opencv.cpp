@@ -41,7 +41,7 @@ struct L1L2Vision {
     L1L2VisionConfig cfg;
     cv::Size size;
     L1L2LkFunctions lucas_kanade{};
-    Scaler to_grey{nullptr, l1l2_image_scale_free}, to_thumbnail{nullptr, l1l2_image_scale_free};
+    Scaler to_gray{nullptr, l1l2_image_scale_free}, to_thumbnail{nullptr, l1l2_image_scale_free};
     Pyramid pyramid{nullptr, l1l2_motion_pyramid_free}, previous_pyramid{nullptr, l1l2_motion_pyramid_free};
     int pictures = 0;                        /* taken since reset, at most 2 matter */
     cv::Rect active;                         /* the picture without its bars, of the downscaled size */
@@ -298,7 +298,7 @@ L1L2StabResult l1l2_vision_create(L1L2Vision **out, const L1L2VisionConfig *cfg)
         v->active = cv::Rect(cv::Point(), v->size);
         v->pyramid = pyramid(v->size);
         v->previous_pyramid = pyramid(v->size);
-        v->to_grey = scaler(cfg->format, cv::Size(cfg->width, cfg->height), v->size);
+        v->to_gray = scaler(cfg->format, cv::Size(cfg->width, cfg->height), v->size);
         v->to_thumbnail = scaler(l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8), v->size,
                                  cv::Size(L1L2_THUMBNAIL_W, L1L2_THUMBNAIL_H));
         *out = v.release();
@@ -326,7 +326,7 @@ L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t
 {
     return guard(v->cfg.log, [&] {
         std::swap(v->pyramid, v->previous_pyramid);
-        l1l2_image_scale_run(v->to_grey.get(), data, stride, v->pyramid->grey[0], v->pyramid->level[0].stride);
+        l1l2_image_scale_run(v->to_gray.get(), data, stride, v->pyramid->grey[0], v->pyramid->level[0].stride);
         l1l2_motion_pyramid_build(v->pyramid.get());
         v->pictures = std::min(v->pictures + 1, 2);
         if (v->pictures == 2)
@@ -360,7 +360,7 @@ L1L2StabResult l1l2_vision_corners(L1L2Vision *v, const L1L2Pixel *taken, int co
         v->mask.setTo(0);
         v->mask(active).setTo(255);
         block(v->mask, mask);
-        for (int i = 0; i < count; i++) /* one pixel more, since centre and rim are rounded */
+        for (int i = 0; i < count; i++) /* one pixel more, since center and rim are rounded */
             cv::circle(v->mask, cv::Point(cvRound(taken[i].x / scale), cvRound(taken[i].y / scale)),
                        cvCeil(distance) + 1, cv::Scalar(0), cv::FILLED);
         bool empty[kCellsX * kCellsY];

@@ -230,7 +230,7 @@ static void assert_no_similarity(int count)
         ck_assert(!inlier[i]);
 }
 
-START_TEST(where_no_similarity_exists_the_identity_comes_back)
+START_TEST(the_identity_is_returned_if_no_similarity_exists)
 {
     const L1L2Mat identity = l1l2_mat_identity();
     make_pairs(&identity, 0.0, 0.0);
@@ -274,7 +274,7 @@ int main(void)
     tcase_add_test(tc, consensus_weights_decide_which_of_two_motions_wins);
     tcase_add_test(tc, the_unit_does_not_matter);
     tcase_add_test(tc, equal_seeds_give_equal_bits);
-    tcase_add_test(tc, where_no_similarity_exists_the_identity_comes_back);
+    tcase_add_test(tc, the_identity_is_returned_if_no_similarity_exists);
     tcase_add_test(tc, pairs_that_are_not_finite_are_outliers);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);

@@ -105,7 +105,7 @@ static inline double error_at(const Run *run, const L1L2MotionResult *r, int t)
     return corner_rms(&F, &true_F, &run->cfg);
 }
 
-/* Frame t is frame 0 turned and scaled t times about its centre. */
+/* Frame t is frame 0 turned and scaled t times about its center. */
 static inline L1L2MotionResult push_turned(Run *run, int t, double angle, double scale)
 {
     const double zoom = pow(scale, t), a = zoom * cos(angle * t), b = zoom * sin(angle * t);

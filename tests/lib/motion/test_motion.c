@@ -121,10 +121,10 @@ START_TEST(packed_pictures_give_nearly_the_motion_of_their_luma)
     SynthPicture packed = synth_picture_new(formats[_i], cfg.width, cfg.height);
     L1L2Motion *motion = motion_new(cfg.width, cfg.height, formats[_i]);
     for (int t = 0; t < 15; t++) {
-        const L1L2MotionResult grey = push_frame(&run, t);
+        const L1L2MotionResult gray = push_frame(&run, t);
         synth_render(run.synth, t, packed.format, packed.data, packed.stride);
-        const L1L2MotionResult colour = push(motion, &packed, t == 0);
-        const L1L2Mat a = in_pixels(&run, &grey.F), b = in_pixels(&run, &colour.F);
+        const L1L2MotionResult color = push(motion, &packed, t == 0);
+        const L1L2Mat a = in_pixels(&run, &gray.F), b = in_pixels(&run, &color.F);
         ck_assert_double_le(corner_rms(&a, &b, &cfg), 0.05);
     }
     l1l2_motion_free(motion);
@@ -133,12 +133,12 @@ START_TEST(packed_pictures_give_nearly_the_motion_of_their_luma)
 }
 END_TEST
 
-START_TEST(a_turn_about_the_centre_leaves_the_centre_where_it_is)
+START_TEST(a_rotation_about_the_center_does_not_move_the_center)
 {
     SynthConfig cfg = synth_defaults();
     cfg.width = 1920, cfg.height = 1080;
     Run run = run_new(&cfg);
-    double x = 0.0, y = 0.0; /* with the centre half a tracked pixel off, these would be 0.15 px */
+    double x = 0.0, y = 0.0; /* with the center half a tracked pixel off, these would be 0.15 px */
     for (int t = 0; t < 9; t++) {
         const L1L2MotionResult r = push_turned(&run, t, 0.1, 1.0);
         const L1L2Mat F = in_pixels(&run, &r.F);
@@ -170,7 +170,7 @@ START_TEST(new_points_come_every_ten_frames)
 }
 END_TEST
 
-START_TEST(a_thumbnail_is_measured_too)
+START_TEST(a_tiny_picture_is_measured_too)
 {
     SynthConfig cfg = synth_defaults();
     cfg.width = 96, cfg.height = 64;
@@ -210,9 +210,9 @@ int main(void)
     tcase_add_test(tc, a_clip_that_repeats_its_frames_has_no_motion_there);
     tcase_add_test(tc, two_instances_and_a_reset_one_give_equal_bits);
     tcase_add_loop_test(tc, packed_pictures_give_nearly_the_motion_of_their_luma, 0, 4);
-    tcase_add_test(tc, a_turn_about_the_centre_leaves_the_centre_where_it_is);
+    tcase_add_test(tc, a_rotation_about_the_center_does_not_move_the_center);
     tcase_add_test(tc, new_points_come_every_ten_frames);
-    tcase_add_test(tc, a_thumbnail_is_measured_too);
+    tcase_add_test(tc, a_tiny_picture_is_measured_too);
     tcase_add_test(tc, sides_that_scale_unequally_do_not_bend_the_motion);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* What happens in real footage: where paths end, where the motion is bridged, and that it is exact again at once. */
+/* Events of real footage: where paths start, where the motion is predicted, and that it is exact right after that. */
 #include "checkx.h"
 #include "synth_cases.h"
 #include "synth_trial.h"
 
 enum { WIDTH = 480, FRAMES = 135 };
 
-/* What is exact, px at full contrast; with less of it, noise counts for more. */
+/* The error that counts as exact, px at full contrast; at lower contrast, noise has more effect. */
 static const double exact = 0.1;
 
 static SynthTrial trial_of(const char *name, bool overlaid, SynthConfig *cfg)
@@ -17,7 +17,7 @@ static SynthTrial trial_of(const char *name, bool overlaid, SynthConfig *cfg)
     return synth_trial_new(cfg, FRAMES);
 }
 
-/* Fails where frame t is measured and not exact. Nothing can be said where the scene cannot be seen. */
+/* Fails if frame t was measured and is not exact, unless the scene is hidden. */
 static void expect_exact(const SynthTrial *trial, const char *name, int t)
 {
     if (trial->contrast[t] > 0.0 && trial->contrast[t - 1] > 0.0 && !(trial->info[t].flags & L1L2STAB_INFO_MOTION_LOST))
@@ -29,7 +29,7 @@ static void expect_exact(const SynthTrial *trial, const char *name, int t)
 typedef struct Cut {
     const char *name;
     int first, last;
-    bool in_the_dark; /* the new path begins with its first frames that can be told: a jump where little is seen */
+    bool in_the_dark; /* the path may start some frames after the cut, while contrast is low: it jumps there */
 } Cut;
 
 static const Cut cuts[] = {
@@ -80,7 +80,7 @@ static const Bridge bridges[] = {
     {"flicker", 45, 124, false},
 };
 
-START_TEST(what_hides_the_scene_is_bridged_and_the_motion_exact_again_after_it)
+START_TEST(a_hidden_scene_is_bridged_and_the_motion_is_exact_again_after_it)
 {
     static const double still[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     const Bridge *b = &bridges[_i];
@@ -105,7 +105,7 @@ START_TEST(what_hides_the_scene_is_bridged_and_the_motion_exact_again_after_it)
 }
 END_TEST
 
-START_TEST(repeated_frames_stand_still_and_what_is_shown_does_not_jerk)
+START_TEST(repeated_frames_have_no_motion_and_the_output_does_not_jerk)
 {
     static const char *const names[] = {"every 5th frame again", "nearly again", "every 2nd, coded",
                                         "frozen for 6 frames"};
@@ -120,7 +120,7 @@ START_TEST(repeated_frames_stand_still_and_what_is_shown_does_not_jerk)
 }
 END_TEST
 
-START_TEST(what_never_moves_does_not_hold_the_scene)
+START_TEST(static_overlays_and_bars_do_not_change_the_motion)
 {
     static const char *const names[] = {"logo and timecode", "logo and timecode, dark", "letterbox",
                                         "pillarbox and logo"};
@@ -142,10 +142,10 @@ int main(void)
     TCase *tc = tcase_create("motion_events");
     tcase_set_timeout(tc, 60);
     tcase_add_loop_test(tc, another_shot_starts_a_path, 0, sizeof cuts / sizeof cuts[0]);
-    tcase_add_loop_test(tc, what_hides_the_scene_is_bridged_and_the_motion_exact_again_after_it, 0,
+    tcase_add_loop_test(tc, a_hidden_scene_is_bridged_and_the_motion_is_exact_again_after_it, 0,
                         sizeof bridges / sizeof bridges[0]);
-    tcase_add_loop_test(tc, repeated_frames_stand_still_and_what_is_shown_does_not_jerk, 0, 4);
-    tcase_add_loop_test(tc, what_never_moves_does_not_hold_the_scene, 0, 4);
+    tcase_add_loop_test(tc, repeated_frames_have_no_motion_and_the_output_does_not_jerk, 0, 4);
+    tcase_add_loop_test(tc, static_overlays_and_bars_do_not_change_the_motion, 0, 4);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The same clip in other formats gives the same motion: its grey picture is tracked, whatever lies beside it. */
+/* The same clip in other formats has the same motion: only its gray picture is tracked. */
 #include "common/rng.h"
 #include "motion/motion_fixture.h"
 
-/* All ways in which grey lies in a first plane. */
+/* All layouts of the gray picture in a first plane. */
 static const L1L2StabFormat formats[] = {
     L1L2STAB_FORMAT_I420_10LE, L1L2STAB_FORMAT_I420_12LE, L1L2STAB_FORMAT_P010_10LE, L1L2STAB_FORMAT_P016_LE,
     L1L2STAB_FORMAT_GRAY16_LE, L1L2STAB_FORMAT_GBR,       L1L2STAB_FORMAT_YUY2,      L1L2STAB_FORMAT_UYVY,
@@ -13,16 +13,16 @@ static const L1L2StabFormat formats[] = {
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
-/* The grey picture as the first plane of a format, with random bits below its 8 and noise in components that are no
- * part of grey. */
-static void fill_plane(const SynthPicture *grey, const L1L2FormatInfo *format, uint8_t *plane, ptrdiff_t stride,
+/* The gray picture as the first plane of a format, with random bits below its 8 and noise in components that are no
+ * part of gray. */
+static void fill_plane(const SynthPicture *gray, const L1L2FormatInfo *format, uint8_t *plane, ptrdiff_t stride,
                        L1L2Rng *rng)
 {
     const int components = l1l2_image_format_pixel_components(format), bytes = l1l2_image_format_bytes(format);
-    for (int y = 0; y < grey->height; y++)
-        for (int k = 0; k < grey->width * components; k++) {
-            const uint32_t level = format->grey[k % components] > 0.0
-                                       ? grey->data[0][y * grey->stride[0] + k / components]
+    for (int y = 0; y < gray->height; y++)
+        for (int k = 0; k < gray->width * components; k++) {
+            const uint32_t level = format->gray[k % components] > 0.0
+                                       ? gray->data[0][y * gray->stride[0] + k / components]
                                        : l1l2_rng_below(rng, 256);
             const uint32_t deep = level << (format->depth - 8) | l1l2_rng_below(rng, 1u << (format->depth - 8));
             plane[y * stride + k * bytes] = (uint8_t)(deep << format->shift);
@@ -47,10 +47,10 @@ START_TEST(the_same_clip_in_another_format_has_the_same_motion)
     for (int t = 0; t < 12; t++) {
         const L1L2Mat still = l1l2_mat_identity();
         L1L2MotionResult other;
-        const L1L2MotionResult grey = push_frame(&run, t);
+        const L1L2MotionResult gray = push_frame(&run, t);
         fill_plane(&run.picture, format, plane, stride, &rng);
         ck_assert_int_eq(l1l2_motion_push(motion, plane, stride, t == 0, &other), L1L2STAB_OK);
-        const L1L2Mat a = in_pixels(&run, &grey.F), b = in_pixels(&run, &other.F);
+        const L1L2Mat a = in_pixels(&run, &gray.F), b = in_pixels(&run, &other.F);
         worst = fmax(worst, corner_rms(&a, &b, &cfg));
         moved = fmax(moved, corner_rms(&a, &still, &cfg));
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Where the motion cannot be measured, or not in full: the ladder of models, path starts, frames of any size. */
+/* Frames whose motion cannot be measured, or only in part: model selection, path starts, and frames of any size. */
 #include "motion/motion_fixture.h"
 
 START_TEST(black_frames_are_predicted_from_a_fading_motion_and_then_taken_as_still)
@@ -26,7 +26,7 @@ START_TEST(black_frames_are_predicted_from_a_fading_motion_and_then_taken_as_sti
     }
     ck_assert_int_eq(last, L1L2STAB_MOTION_SOURCE_IDENTITY);
     ck_assert_int_eq(warnings, 1); /* once, not for each frame */
-    /* From black to the scene nothing can be followed; from there on, all is as before. */
+    /* No point of a black frame can be tracked into the next. After that all is as before. */
     ck_assert_int_lt(push_frame(&run, 50).model, L1L2STAB_MOTION_SOURCE_TRANSLATION);
     for (int t = 51; t < 60; t++) {
         const L1L2MotionResult r = push_frame(&run, t);
@@ -84,7 +84,7 @@ START_TEST(after_a_reset_the_first_measured_frame_knows_no_picture_before_it)
 }
 END_TEST
 
-/* Grey, with a small textured patch of `size` px in its middle. */
+/* Gray, with a small textured patch of `size` px in its middle. */
 static L1L2MotionResult push_patch(Run *run, int t, int size)
 {
     synth_render_gray(run->synth, t, run->picture.data[0], run->picture.stride[0]);
@@ -147,7 +147,7 @@ START_TEST(frames_of_any_size_do_no_harm)
 }
 END_TEST
 
-START_TEST(a_motion_that_no_camera_makes_is_not_believed)
+START_TEST(a_motion_that_no_camera_makes_is_not_accepted)
 {
     SynthConfig cfg = synth_defaults();
     Run run = run_new(&cfg);
@@ -174,7 +174,7 @@ int main(void)
     tcase_add_test(tc, a_few_points_in_one_place_give_a_translation);
     tcase_add_test(tc, a_path_start_has_no_motion_and_the_next_frame_is_measured_from_it);
     tcase_add_loop_test(tc, frames_of_any_size_do_no_harm, 0, 5);
-    tcase_add_test(tc, a_motion_that_no_camera_makes_is_not_believed);
+    tcase_add_test(tc, a_motion_that_no_camera_makes_is_not_accepted);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);
 }

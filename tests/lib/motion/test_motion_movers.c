@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The background's motion, not the subject's: things that move by themselves on a large part of the frame. */
+/* The background's motion is measured while subjects move on a large part of the frame. */
 #include "checkx.h"
 #include "synth_cases.h"
 #include "synth_trial.h"
@@ -24,7 +24,7 @@ START_TEST(a_mover_on_three_fifths_is_not_followed_with_confidence)
     int confident = 0;
     for (int t = 1; t < trial.frames; t++)
         confident += trial.error[t] > 0.5 && trial.info[t].quality >= 0.5;
-    ck_assert_msg(confident <= trial.frames / 20, "%d of %d frames are wrong and say that they are right", confident,
+    ck_assert_msg(confident <= trial.frames / 20, "%d of %d frames are wrong with high quality", confident,
                   trial.frames);
     SynthConfig empty = cfg;
     empty.foreground = 0.0;

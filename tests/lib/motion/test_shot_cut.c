@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Cuts, and what only looks like one: clips made of two synthetic scenes, black and flashes. */
+/* Cuts, and clips that resemble one: two synthetic scenes, black frames and flashes. */
 #include <string.h>
 
 #include "checkx.h"
@@ -106,7 +106,7 @@ START_TEST(a_flash_is_no_cut)
 }
 END_TEST
 
-START_TEST(a_thumbnail_is_like_itself_moved_a_little_and_unlike_another)
+START_TEST(a_thumbnail_matches_itself_moved_a_little_and_no_other)
 {
     SynthConfig cfg = synth_defaults();
     cfg.width = L1L2_THUMBNAIL_W * 8, cfg.height = L1L2_THUMBNAIL_H * 8;
@@ -148,7 +148,7 @@ int main(void)
     tcase_add_test(tcase, a_cut_through_black_starts_a_path_where_the_picture_comes_back);
     tcase_add_test(tcase, a_covered_lens_is_no_cut);
     tcase_add_test(tcase, a_flash_is_no_cut);
-    tcase_add_test(tcase, a_thumbnail_is_like_itself_moved_a_little_and_unlike_another);
+    tcase_add_test(tcase, a_thumbnail_matches_itself_moved_a_little_and_no_other);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

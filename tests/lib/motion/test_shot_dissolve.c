@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Dissolves between two synthetic shots, and what is none. */
+/* Dissolves between two synthetic shots, and clips that resemble one. */
 #include <math.h>
 #include <string.h>
 
@@ -45,7 +45,7 @@ static L1L2Mat motion_of(const Synth *shot, int t)
     return F;
 }
 
-/* The frames at which another shot was seen to begin; -1 where none was. More than one fails. */
+/* The frame at which another shot was detected, or -1. More than one fails. */
 static int begins_at(const Synth *first, const Synth *second, int from, int frames, bool passes)
 {
     static L1L2ShotDissolve dissolve;
@@ -64,7 +64,7 @@ static int begins_at(const Synth *first, const Synth *second, int from, int fram
     return seen;
 }
 
-START_TEST(a_dissolve_of_4_to_40_frames_begins_one_other_shot)
+START_TEST(a_dissolve_of_4_to_40_frames_starts_one_other_shot)
 {
     static const int frames[] = {4, 8, 15, 25, 40};
     for (int i = 0; i < 5; i++)
@@ -78,7 +78,7 @@ START_TEST(a_dissolve_of_4_to_40_frames_begins_one_other_shot)
 }
 END_TEST
 
-START_TEST(something_that_passes_before_the_camera_is_none)
+START_TEST(an_object_that_passes_before_the_camera_is_no_dissolve)
 {
     Synth *first = shot_new(1, 2.0, 0.0, 0.004), *second = shot_new(2, 2.0, 0.0, 0.004);
     ck_assert_int_eq(begins_at(first, second, 50, 15, true), -1);
@@ -88,7 +88,7 @@ START_TEST(something_that_passes_before_the_camera_is_none)
 }
 END_TEST
 
-START_TEST(a_camera_that_shakes_pans_and_turns_dissolves_nothing)
+START_TEST(a_camera_that_shakes_pans_and_turns_makes_no_dissolve)
 {
     static const double shake[] = {0.5, 12.0}, pan[] = {0.0, 15.0}, roll[] = {0.001, 0.02, 0.06};
     for (int i = 0; i < 12; i++) {
@@ -105,9 +105,9 @@ int main(void)
     Suite *suite = suite_create("dissolve");
     TCase *tcase = tcase_create("dissolve");
     tcase_set_timeout(tcase, 60);
-    tcase_add_test(tcase, a_dissolve_of_4_to_40_frames_begins_one_other_shot);
-    tcase_add_test(tcase, something_that_passes_before_the_camera_is_none);
-    tcase_add_test(tcase, a_camera_that_shakes_pans_and_turns_dissolves_nothing);
+    tcase_add_test(tcase, a_dissolve_of_4_to_40_frames_starts_one_other_shot);
+    tcase_add_test(tcase, an_object_that_passes_before_the_camera_is_no_dissolve);
+    tcase_add_test(tcase, a_camera_that_shakes_pans_and_turns_makes_no_dissolve);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What stands still in front of a moving camera: burnt-in text over a scene of little contrast. */
+/* Static overlays before a moving camera: burnt-in text over a scene of little contrast. */
 #include "common/rng.h"
 #include "motion/motion_fixture.h"
 
@@ -17,7 +17,7 @@ static void burn_in(uint8_t *picture, int left, int top)
         }
 }
 
-START_TEST(burnt_in_text_does_not_hold_a_dark_scene)
+START_TEST(burnt_in_text_is_not_taken_for_a_dark_scene_that_stands_still)
 {
     static const double contrasts[] = {0.45, 0.15, 0.045}; /* of the scene's 256 levels */
     for (int i = 0; i < 3; i++) {
@@ -40,7 +40,7 @@ START_TEST(burnt_in_text_does_not_hold_a_dark_scene)
             const L1L2Mat found = l1l2_mat_rescale(result.F, hypot(WIDTH, HEIGHT));
             sum += corner_rms(&found, &expected, &cfg);
         }
-        /* Where the text wins, the picture is taken as still: 2.6 px off. */
+        /* If the text won, the picture would be taken as still: an error of 2.6 px. */
         ck_assert_msg(sum / 49.0 < 0.3, "contrast %g: %g px off in the mean", contrasts[i], sum / 49.0);
         run_free(&run);
     }
@@ -52,7 +52,7 @@ int main(void)
     Suite *suite = suite_create("motion_overlay");
     TCase *tcase = tcase_create("motion_overlay");
     tcase_set_timeout(tcase, 60);
-    tcase_add_test(tcase, burnt_in_text_does_not_hold_a_dark_scene);
+    tcase_add_test(tcase, burnt_in_text_is_not_taken_for_a_dark_scene_that_stands_still);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

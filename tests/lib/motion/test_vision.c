@@ -37,7 +37,7 @@ static void teardown(void)
     l1l2_vision_free(vision);
 }
 
-/* A new picture of one grey level, `bytes` in all. */
+/* A new picture of one gray level, `bytes` in all. */
 static void advance_flat(int width, int height, int components, uint8_t level)
 {
     const size_t bytes = (size_t)width * (size_t)height * (size_t)components;
@@ -68,7 +68,7 @@ static int corners(const L1L2Pixel *taken, int count, L1L2Pixel *out, int capaci
     return found;
 }
 
-START_TEST(the_longer_side_becomes_the_analysed_size)
+START_TEST(the_longer_side_is_scaled_to_the_analysis_size)
 {
     static const int sizes[][4] = {{1280, 720, 640, 360}, {1920, 1080, 640, 360}, {1080, 1920, 360, 640},
                                    {855, 483, 640, 362},  {640, 361, 640, 361},   {320, 240, 320, 240},
@@ -107,7 +107,7 @@ START_TEST(corners_keep_their_distance_from_each_other_and_from_those_taken)
 }
 END_TEST
 
-START_TEST(points_are_followed_to_where_they_went)
+START_TEST(points_are_tracked_to_their_true_positions)
 {
     SynthConfig cfg = synth_defaults();
     cfg.noise = 3.0;
@@ -197,7 +197,7 @@ START_TEST(a_flat_picture_has_no_corners)
 }
 END_TEST
 
-START_TEST(without_two_pictures_there_is_nothing_to_find_or_follow)
+START_TEST(without_two_pictures_no_corner_is_found_or_tracked)
 {
     const SynthConfig cfg = synth_defaults();
     L1L2Pixel at = {100.0f, 100.0f}, to;
@@ -253,18 +253,18 @@ START_TEST(the_rows_may_run_bottom_up)
 }
 END_TEST
 
-START_TEST(packed_pictures_are_seen_like_their_luma)
+START_TEST(packed_pictures_have_the_corners_of_their_luma)
 {
     static const L1L2StabFormat packed[] = {L1L2STAB_FORMAT_BGR, L1L2STAB_FORMAT_RGB, L1L2STAB_FORMAT_BGRX,
                                             L1L2STAB_FORMAT_RGBA};
-    L1L2Pixel grey[POINTS], colour[POINTS];
-    ck_assert_int_eq(corners_through(L1L2STAB_FORMAT_GRAY8, false, grey), POINTS);
+    L1L2Pixel gray[POINTS], color[POINTS];
+    ck_assert_int_eq(corners_through(L1L2STAB_FORMAT_GRAY8, false, gray), POINTS);
     for (size_t k = 0; k < sizeof packed / sizeof packed[0]; k++) {
-        ck_assert_int_eq(corners_through(packed[k], false, colour), POINTS);
+        ck_assert_int_eq(corners_through(packed[k], false, color), POINTS);
         int same = 0;
         for (int i = 0; i < POINTS; i++)
             for (int j = 0; j < POINTS; j++)
-                same += fabsf(grey[i].x - colour[j].x) <= 2.0f && fabsf(grey[i].y - colour[j].y) <= 2.0f;
+                same += fabsf(gray[i].x - color[j].x) <= 2.0f && fabsf(gray[i].y - color[j].y) <= 2.0f;
         ck_assert_int_ge(same, POINTS * 9 / 10);
     }
 }
@@ -292,7 +292,7 @@ START_TEST(small_and_thin_pictures_do_no_harm)
 }
 END_TEST
 
-START_TEST(an_exception_becomes_an_error_and_a_message)
+START_TEST(an_exception_becomes_an_error_code_and_a_log_message)
 {
     create(64, 64, L1L2STAB_FORMAT_GRAY8);
     advance_flat(64, 64, 1, 0);
@@ -311,17 +311,17 @@ int main(void)
     TCase *tc = tcase_create("vision");
     tcase_add_checked_fixture(tc, setup, teardown);
     tcase_set_timeout(tc, 60);
-    tcase_add_test(tc, the_longer_side_becomes_the_analysed_size);
+    tcase_add_test(tc, the_longer_side_is_scaled_to_the_analysis_size);
     tcase_add_test(tc, corners_keep_their_distance_from_each_other_and_from_those_taken);
-    tcase_add_test(tc, points_are_followed_to_where_they_went);
+    tcase_add_test(tc, points_are_tracked_to_their_true_positions);
     tcase_add_test(tc, points_that_leave_the_picture_are_not_ok);
     tcase_add_test(tc, points_that_do_not_come_back_are_not_ok);
     tcase_add_test(tc, a_flat_picture_has_no_corners);
-    tcase_add_test(tc, without_two_pictures_there_is_nothing_to_find_or_follow);
+    tcase_add_test(tc, without_two_pictures_no_corner_is_found_or_tracked);
     tcase_add_test(tc, the_rows_may_run_bottom_up);
-    tcase_add_test(tc, packed_pictures_are_seen_like_their_luma);
+    tcase_add_test(tc, packed_pictures_have_the_corners_of_their_luma);
     tcase_add_test(tc, small_and_thin_pictures_do_no_harm);
-    tcase_add_test(tc, an_exception_becomes_an_error_and_a_message);
+    tcase_add_test(tc, an_exception_becomes_an_error_code_and_a_log_message);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);
 }

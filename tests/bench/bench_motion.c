@@ -2,10 +2,10 @@
 /*
  * The library on synthetic clips at its defaults: its measured motion and its stabilized output against the truth.
  *
- * error: of F_t, rms over the frame's corners, px; over all frames whose motion was measured, and the worst. drift: error
- * of the product of all F_t since the shot began. lost: frames without a measured motion. starts: paths after the first.
- * jitter: rms acceleration of the true camera and of the stabilized picture, px. Times are those of one core if the
- * process is bound to one.
+ * error: of F_t, rms over the frame's corners, px; over all frames whose motion was measured, and the worst. drift:
+ * error of the product of all F_t since the shot began. lost: frames without a measured motion. starts: paths after the
+ * first. jitter: rms acceleration of the true camera and of the stabilized picture, px. Times are those of one core if
+ * the process is bound to one.
  *
  * usage: bench_motion [WIDTH [FRAMES [CASE]]]      default: 1280 300, all; CASE is part of a name
  */

@@ -81,8 +81,8 @@ private:
     cv::MatAllocator *standard = cv::Mat::getStdAllocator();
 };
 
-/* The measured motions of the clip; empty where anything but a lack of memory went wrong. */
-std::vector<double> motions_of(const std::vector<SynthPicture> &clip, int *errors = nullptr)
+/* The motions of the clip, nine numbers a frame. error: of a frame that could not be measured, if there was one. */
+std::vector<double> motions_of(const std::vector<SynthPicture> &clip, L1L2StabResult *error = nullptr)
 {
     std::vector<double> motions;
     L1L2StabConfig cfg;
@@ -96,37 +96,33 @@ std::vector<double> motions_of(const std::vector<SynthPicture> &clip, int *error
         return motions;
     for (const SynthPicture &picture : clip) {
         L1L2StabFrame frame = {};
+        frame.struct_size = sizeof frame;
         frame.data[0] = picture.data[0];
         frame.stride[0] = picture.stride[0];
-        L1L2StabResult result = l1l2stab_push(stab, &frame);
-        if (result == L1L2STAB_ERR_NOMEM && errors) { /* of the frame before: reported once */
-            ++*errors;
-            result = l1l2stab_push(stab, &frame);
-        }
-        if (result != L1L2STAB_OK)
+        if (l1l2stab_push(stab, &frame) != L1L2STAB_OK)
             break;
     }
-    if (l1l2stab_finish(stab) == L1L2STAB_ERR_NOMEM && errors) {
-        ++*errors;
-        l1l2stab_finish(stab);
-    }
+    if (l1l2stab_finish(stab) != L1L2STAB_OK)
+        motions.clear();
     while (l1l2stab_pull(stab, nullptr, &info) == L1L2STAB_OK)
         motions.insert(motions.end(), info.F, info.F + 9);
+    if (error)
+        *error = l1l2stab_take_error(stab);
     l1l2stab_free(&stab);
     return motions;
 }
 
-/* Fails each of OpenCV's allocations in turn. True if each is reported once and all frames come out. */
+/* Fails each of OpenCV's allocations in turn. True if each is reported and all frames come out. */
 bool survives_failed_allocations(const std::vector<SynthPicture> &clip)
 {
     FailingAllocator allocator;
     bool ok = true;
     cv::Mat::setDefaultAllocator(&allocator);
     for (allocator.failing = 0; allocator.count >= allocator.failing; allocator.failing++) {
-        int errors = 0;
+        L1L2StabResult error = L1L2STAB_OK;
         allocator.count = 0;
-        ok = ok && motions_of(clip, &errors).size() == 9 * clip.size();
-        ok = ok && errors == (allocator.count > allocator.failing);
+        ok = ok && motions_of(clip, &error).size() == 9 * clip.size();
+        ok = ok && error == (allocator.count > allocator.failing ? L1L2STAB_ERR_NOMEM : L1L2STAB_OK);
     }
     cv::Mat::setDefaultAllocator(nullptr);
     return ok && allocator.failing > 5;

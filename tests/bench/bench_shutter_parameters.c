@@ -17,8 +17,8 @@
  * value of their parameters. Printed is by how much the residual changes, rms over the frames, px, and the default's
  * rms.
  *
- * usage: bench_shutter_parameters [--all]    Without --all, prints only results that differ by 3 % or more from the
- *                                            defaults', and names the parameters of which there are none.
+ * usage: bench_shutter_parameters [PARAMETER]    All of them, or one. Prints the results that differ by 3 % or more
+ *                                                from the defaults', and names the parameters of which there are none.
  *        gst-launch-1.0 -q filesrc location=CLIP ! decodebin ! videoconvert ! video/x-raw,format=GRAY8 ! fdsink |
  *        bench_shutter_parameters WIDTH HEIGHT      (WIDTH a multiple of 4: rows without padding)
  */
@@ -79,18 +79,17 @@ typedef struct Recording {
 typedef struct Swept {
     const char *name;
     size_t offset;
+    int numbers; /* 2: both ends of a ramp, which are swept together so that it stays a ramp */
 } Swept;
 
-#define REAL(field) {#field, offsetof(L1L2ShutterParameters, field)}
+#define REAL(field) {#field, offsetof(L1L2ShutterParameters, field), 1}
+#define RAMP(field) {#field, offsetof(L1L2ShutterParameters, field), 2}
 static const Swept table[] = {
     REAL(bend_weight), REAL(translation_weight), REAL(linear_weight), REAL(wide_scale), REAL(narrow_scale),
-    REAL(min_coverage), REAL(gate_ridge), REAL(gate_arm), REAL(leak),
-    REAL(unmeasured_weight), REAL(confidence_fade), REAL(halves.none), REAL(halves.full), REAL(columns.none),
-    REAL(columns.full), REAL(camera.none), REAL(camera.full), REAL(max_reach), REAL(max_stretch),
- REAL(readout_agreement.none), REAL(readout_agreement.full),
-    REAL(max_readout), REAL(readout_too_long.none), REAL(readout_too_long.full), REAL(compress_zone),
- REAL(rows_unexplained), REAL(rows_cap), REAL(rows_max_jump),
-
+    REAL(min_coverage), REAL(gate_ridge), REAL(gate_arm), REAL(leak), REAL(unmeasured_weight),
+    REAL(confidence_fade), RAMP(halves), RAMP(columns), RAMP(camera), REAL(max_reach), REAL(max_stretch),
+    RAMP(readout_agreement), REAL(max_readout), RAMP(readout_too_long), REAL(compress_zone),
+    REAL(rows_unexplained), REAL(rows_cap), REAL(rows_max_jump),
 };
 enum { SWEPT = sizeof table / sizeof *table };
 
@@ -348,12 +347,14 @@ static const char *result_name(int i, char name[64])
 
 static void scale(L1L2ShutterParameters *parameters, const Swept *swept, double factor)
 {
-    char *field = (char *)parameters + swept->offset;
-    double value;
-    memcpy(&value, field, sizeof value);
-    /* A factor per frame just below 1 is swept by its memory, 1 / (1 - factor). */
-    value = value >= 0.9 && value < 1.0 ? 1.0 - (1.0 - value) / factor : value * factor;
-    memcpy(field, &value, sizeof value);
+    for (int i = 0; i < swept->numbers; i++) {
+        char *field = (char *)parameters + swept->offset + (size_t)i * sizeof(double);
+        double value;
+        memcpy(&value, field, sizeof value);
+        /* A factor per frame just below 1 is swept by its memory, 1 / (1 - factor). */
+        value = value >= 0.9 && value < 1.0 ? 1.0 - (1.0 - value) / factor : value * factor;
+        memcpy(field, &value, sizeof value);
+    }
 }
 
 /* A real clip: the motion of each frame, with its residual. */
@@ -460,7 +461,6 @@ static int sweep_clip(int width, int height)
 
 int main(int argc, char **argv)
 {
-    const bool all = argc > 1 && strcmp(argv[1], "--all") == 0;
     if (argc > 2)
         return sweep_clip(atoi(argv[1]), atoi(argv[2]));
     double usual[RESULTS], result[RESULTS];
@@ -476,6 +476,8 @@ int main(int argc, char **argv)
     fflush(stdout);
     for (int s = 0; s < SWEPT; s++) {
         int changed = 0;
+        if (argc > 1 && strcmp(argv[1], table[s].name) != 0)
+            continue;
         for (int doubled = 0; doubled < 2; doubled++) {
             L1L2ShutterParameters parameters = l1l2_shutter_default_parameters;
             scale(&parameters, &table[s], doubled ? 2.0 : 0.5);
@@ -483,7 +485,7 @@ int main(int argc, char **argv)
             for (int i = 0; i < RESULTS; i++) {
                 const bool differs = fabs(result[i] - usual[i]) >= 0.03 * fmax(fabs(usual[i]), 0.01);
                 changed += differs;
-                if (differs || all)
+                if (differs)
                     printf("%-26s %s  %-34s %9.3f -> %9.3f\n", table[s].name, doubled ? "doubled" : "halved ",
                            result_name(i, name), usual[i], result[i]);
             }

@@ -25,7 +25,7 @@
  * solve.rho             2       -               Near the best fixed value for OSQP alone.
  * solve.tolerance       1e-6    scaled units    As above.
  * rescue_work           240000  components x    OSQP where the predictor did not converge: 400 iterations at N = 150,
- *                               iterations      some 80 ms of one core (bench_path). No camera path in tests/reference
+ *                               iterations      some 95 ms of one core (bench_path). No camera path in tests/reference
  *                                               needs it, only motions that no camera makes.
  * rescue_work_a_frame   6000    the same, for   Some 2 ms: windows that slide by one frame need a solve for each frame,
  *                               each frame      and keep up with the video only if it costs less than a frame lasts.

@@ -3,10 +3,11 @@
  * What each tunable parameter does: it is halved and doubled, and the measured motion is compared with the truth of
  * synthetic clips, and with the motion at the defaults.
  *
- * For each value: how many of the clips have another motion at all; the root mean square error of F_t as a part of the
- * default's, the geometric mean over the clips (0.001 px is added to each error); the worst single frame, px; frames
- * without a measured motion and paths started, less the default's; and the clip whose error changes most. Clips given
- * as raw gray files have no truth: for them the error is the distance from the motion at the defaults.
+ * For each value: how many of the clips have another motion or quality at all; the root mean square error of F_t as a
+ * part of the default's, the geometric mean over the clips (0.001 px is added to each error); the worst single frame,
+ * px; frames without a measured motion and paths started, and the mean quality, less the default's; and the clip whose
+ * error changes most. Clips given as raw gray files have no truth: for them the error is the distance from the motion
+ * at the defaults.
  *
  * A module takes part with a table of rows (name, value, unit, effect, evidence) and a struct of doubles in the same
  * order; add it to `tables` and, if it is not a part of the motion's configuration, to measure().
@@ -36,6 +37,7 @@ typedef struct Clip {
     uint8_t *gray;    /* frames one after the other */
     L1L2Mat *truth;   /* of each F_t, px; NULL: not known */
     L1L2Mat *usual;   /* F_t at the defaults, px */
+    double *quality;  /* of these */
 } Clip;
 
 typedef struct Row {
@@ -68,7 +70,9 @@ static void *allocate(size_t count, size_t size)
 static Clip clip_new(const char *name, int width, int height, int frames)
 {
     const size_t pixels = (size_t)width * (size_t)height, count = (size_t)frames;
-    return (Clip){name, width, height, frames, allocate(count, pixels), NULL, allocate(count, sizeof(L1L2Mat))};
+    return (Clip){.name = name, .width = width, .height = height, .frames = frames,
+                  .gray = allocate(count, pixels), .usual = allocate(count, sizeof(L1L2Mat)),
+                  .quality = allocate(count, sizeof(double))};
 }
 
 static Clip synthetic_clip(const char *name)
@@ -102,7 +106,8 @@ static Clip raw_clip(char **argv)
 typedef struct Outcome {
     double rms, worst; /* of the error, px: root mean square over the frame's corners */
     int lost, starts;
-    bool changed;      /* some F_t is not the default's */
+    double quality;    /* mean */
+    bool changed;      /* a motion or its quality is not the default's */
 } Outcome;
 
 static double distance(const Clip *clip, const L1L2Mat *A, const L1L2Mat *B)
@@ -134,9 +139,13 @@ static Outcome measure(Clip *clip, bool usual)
         if (l1l2_motion_push(m, gray, clip->width, t == 0, &r) != L1L2STAB_OK)
             abort();
         const L1L2Mat F = l1l2_mat_rescale(r.F, hypot(clip->width, clip->height));
-        if (usual)
+        if (usual) {
             clip->usual[t] = F;
-        outcome.changed = outcome.changed || memcmp(&F, &clip->usual[t], sizeof F) != 0;
+            clip->quality[t] = r.quality;
+        }
+        outcome.changed = outcome.changed || memcmp(&F, &clip->usual[t], sizeof F) != 0 ||
+                          r.quality != clip->quality[t];
+        outcome.quality += r.quality / clip->frames;
         outcome.starts += r.model == L1L2STAB_MOTION_SOURCE_NONE;
         outcome.lost += r.model == L1L2STAB_MOTION_SOURCE_IDENTITY || r.model == L1L2STAB_MOTION_SOURCE_PREDICTED;
         if (r.model == L1L2STAB_MOTION_SOURCE_NONE)
@@ -153,12 +162,13 @@ static Outcome measure(Clip *clip, bool usual)
 static void print_change(Clip *clips, int count, const Outcome *usual)
 {
     int changed = 0, lost = 0, starts = 0;
-    double sum = 0.0, worst = 0.0, most = 0.0;
+    double sum = 0.0, worst = 0.0, most = 0.0, quality = 0.0;
     const char *which = "";
     for (int i = 0; i < count; i++) {
         const Outcome o = measure(&clips[i], false);
         const double difference = fabs(o.rms - usual[i].rms);
         changed += o.changed;
+        quality += (o.quality - usual[i].quality) / count;
         lost += o.lost - usual[i].lost;
         starts += o.starts - usual[i].starts;
         sum += log((o.rms + 0.001) / (usual[i].rms + 0.001));
@@ -171,8 +181,8 @@ static void print_change(Clip *clips, int count, const Outcome *usual)
     if (changed == 0)
         printf("  nothing changes\n");
     else
-        printf("  %2d clips, error x %.3f, worst %6.2f px, lost %+3d, starts %+2d, most: %s (%.3f px)\n", changed,
-               exp(sum / count), worst, lost, starts, which, most);
+        printf("  %2d clips, error x %.3f, worst %6.2f px, quality %+.3f, lost %+3d, starts %+2d, most: %s (%.3f px)\n",
+               changed, exp(sum / count), worst, quality, lost, starts, which, most);
     fflush(stdout);
 }
 
@@ -211,6 +221,7 @@ int main(int argc, char **argv)
         free(clips[i].gray);
         free(clips[i].truth);
         free(clips[i].usual);
+        free(clips[i].quality);
     }
     return EXIT_SUCCESS;
 }

@@ -9,6 +9,9 @@
 
 enum { MAX = L1L2_RANSAC_MAX_PAIRS };
 
+/* A motion among the outliers is one from this many tracks on; any two tracks agree with some similarity. */
+static const int min_rival_inliers = 8;
+
 void l1l2_motion_model_reset(L1L2ModelSelection *s)
 {
     s->current = s->highest;
@@ -157,7 +160,7 @@ static double find_rival(const L1L2ModelSelection *s, const L1L2TrackSet *tracks
     for (int i = 0; i < tracks->count; i++)
         outlier[i] = !c->inlier[i];
     const int inliers = fit_among(L1L2STAB_MOTION_MODEL_SIMILARITY, tracks, outlier, rival, &G);
-    if (inliers < p->rival_min_inliers ||
+    if (inliers < min_rival_inliers ||
         rms_residual(&G, tracks, rival) > p->translation_max_spread * s->threshold)
         return 0.0;
     return fmin(1.0, rms_residual(&c->F, tracks, rival) / (p->rival_distance * s->threshold));

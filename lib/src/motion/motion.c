@@ -18,6 +18,9 @@
 
 enum { MAX_POINTS = L1L2_RANSAC_MAX_PAIRS };
 
+/* The least distance of points in tiny pictures: corners are found by windows of 3x3 pixels. */
+static const double min_distance_px = 3.0;
+
 struct L1L2Motion {
     L1L2MotionConfig cfg;
     L1L2Vision *vision;
@@ -66,7 +69,7 @@ static void configure(L1L2Motion *m)
                                         .highest = translation ? L1L2STAB_MOTION_MODEL_SIMILARITY : m->cfg.model,
                                         .threshold = p->inlier_distance * pixel};
     const double grid_px = sqrt((double)m->width * m->height / p->max_points);
-    m->distance_px = fmin(fmax(p->point_grid * grid_px, p->min_point_distance), p->point_distance);
+    m->distance_px = fmin(fmax(p->point_grid * grid_px, min_distance_px), p->point_distance);
 }
 
 L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)

@@ -4,6 +4,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Each of the two pictures has at least this part in a mixture; the three pictures share at least this part of the
+ * frame. */
+static const double min_part = 0.2, min_overlap_share = 0.5;
+
 enum { W = L1L2_THUMBNAIL_W, H = L1L2_THUMBNAIL_H };
 
 /* Frames between the old and the new picture, for dissolves of 4 to 40 frames. */
@@ -48,7 +52,7 @@ static bool is_mixture(const L1L2MotionParameters *p, const Sums *s)
     const double determinant = aa * bb - ab * ab;
     const double part_a = (am * bb - bm * ab) / determinant, part_b = (bm * aa - am * ab) / determinant;
     const double sum = part_a + part_b;
-    return part_a >= p->dissolve_min_part && part_b >= p->dissolve_min_part && sum >= p->dissolve_min_sum &&
+    return part_a >= min_part && part_b >= min_part && sum >= p->dissolve_min_sum &&
            sum <= p->dissolve_max_sum && part_a * am + part_b * bm >= p->dissolve_explained * mm;
 }
 
@@ -69,7 +73,7 @@ static bool dissolved(const L1L2ShotDissolve *d, int lag)
     const int old = frame_before(d, lag), between = frame_before(d, lag / 2);
     const L1L2Thumbnail *a = &d->frame[old].thumbnail, *b = &d->frame[d->newest].thumbnail;
     const Shift at_a = shift_to(d, old), at_m = shift_to(d, between);
-    const double min_overlap = d->parameters->dissolve_min_overlap * W * H;
+    const double min_overlap = min_overlap_share * W * H;
     if ((W - abs(at_a.x)) * (H - abs(at_a.y)) < min_overlap || abs(at_a.x) > W || abs(at_a.y) > H)
         return false;
     const Sums s = shared_sums(a, at_a, &d->frame[between].thumbnail, at_m, b);

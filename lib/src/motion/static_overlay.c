@@ -4,6 +4,11 @@
 #include <math.h>
 #include <string.h>
 
+/* A track that moves less, in px of the downscaled picture, stands still: above the noise of tracking. */
+static const double still_px = 0.15;
+/* A track that follows the camera outweighs two that stand still. Scores above the maximum would be forgotten late. */
+static const double agreeing_track = 2.0, max_score = 20.0;
+
 void l1l2_motion_overlay_reset(L1L2StaticOverlay *o)
 {
     memset(o->score, 0, sizeof o->score);
@@ -24,9 +29,9 @@ void l1l2_motion_overlay_learn(L1L2StaticOverlay *o, const L1L2Pair *pairs, cons
             continue;
         double *score = &o->score[cell_of(o, from)];
         if (inlier[i])
-            *score = fmax(*score - p->overlay_miss, 0.0);
-        else if (hypot(to.x - from.x, to.y - from.y) < p->overlay_max_motion * o->pixel)
-            *score = fmin(*score + 1.0, p->overlay_max_hits);
+            *score = fmax(*score - agreeing_track, 0.0);
+        else if (hypot(to.x - from.x, to.y - from.y) < still_px * o->pixel)
+            *score = fmin(*score + 1.0, max_score);
     }
 }
 

@@ -29,7 +29,7 @@ void l1l2_motion_overlay_learn(L1L2StaticOverlay *o, const L1L2Pair *pairs, cons
 bool l1l2_motion_overlay_covers(const L1L2StaticOverlay *o, L1L2Point p);
 
 /* Marks the cells of all overlays, and lets them age by one selection of corners. Nothing is tracked on a masked
- * overlay, so it is forgotten after overlay_max_hits - overlay_hits selections (about 150 frames), and found again
+ * overlay, so it is forgotten after 15 selections (about 150 frames), and found again
  * within a few frames if it is still there. */
 void l1l2_motion_overlay_mask(L1L2StaticOverlay *o, L1L2Mask *mask);
 

@@ -29,6 +29,8 @@ namespace {
 /* Cells in which no corner was selected are searched again by themselves, relative to their own strongest corner: else
  * a burnt-in clock would leave a dark scene without corners. */
 constexpr int kCellsX = 4, kCellsY = 3;
+/* Changes of contrast by less than 8 % (a log ratio) are left to the tracker. Half and twice of it change no clip. */
+constexpr double kSameContrast = 0.08;
 /* A long strip keeps this many pixels of its short side, if it has them, because tracking windows have to fit in. */
 constexpr int kMinSide = 32;
 
@@ -118,7 +120,7 @@ void match_brightness(L1L2Vision *v)
     if (deviation[0][0] < p->flat_picture || deviation[1][0] < p->flat_picture)
         return;
     const double gain = deviation[1][0] / deviation[0][0], offset = mean[1][0] - gain * mean[0][0];
-    if (std::abs(std::log(gain)) < p->same_contrast && std::abs(mean[1][0] - mean[0][0]) < p->same_mean)
+    if (std::abs(std::log(gain)) < kSameContrast && std::abs(mean[1][0] - mean[0][0]) < p->same_mean)
         return;
     cv::Mat matched;
     before.convertTo(matched, CV_8U, gain, offset);

@@ -6,6 +6,8 @@
 #include "common/mem.h"
 
 _Static_assert((int)L1L2_PATH_PAST <= (int)L1L2_FRAME_QUEUE_PAST, "the path looks back on more than is kept");
+_Static_assert((int)L1L2_SHUTTER_FILTER_PAST <= (int)L1L2_FRAME_QUEUE_PAST,
+               "the rolling-shutter filter looks back on more than is kept");
 
 static L1L2QueuedFrame *record_of(const L1L2FrameQueue *queue, int64_t t)
 {
@@ -67,7 +69,22 @@ void l1l2_frame_queue_drop_oldest(L1L2FrameQueue *queue)
         frame.release(frame.opaque);
 }
 
+static L1L2FrameColumn column(const L1L2FrameQueue *queue, void *first)
+{
+    return (L1L2FrameColumn){first, sizeof *queue->records, queue->rows};
+}
+
 L1L2FrameColumn l1l2_frame_queue_path_frames(const L1L2FrameQueue *queue)
 {
-    return (L1L2FrameColumn){&queue->records[0].path, sizeof *queue->records, queue->rows};
+    return column(queue, &queue->records[0].path);
+}
+
+L1L2FrameColumn l1l2_frame_queue_shutter_frames(const L1L2FrameQueue *queue)
+{
+    return column(queue, &queue->records[0].shutter);
+}
+
+L1L2FrameColumn l1l2_frame_queue_motions(const L1L2FrameQueue *queue)
+{
+    return column(queue, &queue->records[0].path.F);
 }

@@ -3,8 +3,8 @@
  * The frames that are held, one record each: all that is known of a frame from push to pull, in one place. The queue
  * has a fixed capacity and gives each frame back to its owner exactly once.
  *
- * Frames are numbered from 0 since create or reset. The camera path works on its field of these records
- * (common/frame_column.h). It looks back on a few frames that have been pulled, so the numbers of those stay.
+ * Frames are numbered from 0 since create or reset. The camera path and the rolling-shutter filter work on their fields
+ * of these records (common/frame_column.h). They look back on a few pulled frames, so the numbers of those stay.
  */
 #ifndef L1L2_FRAME_QUEUE_H
 #define L1L2_FRAME_QUEUE_H
@@ -14,6 +14,7 @@
 #include "common/frame_column.h"
 #include "motion/motion.h"
 #include "path/path.h"
+#include "rolling_shutter/filter.h"
 
 typedef struct L1L2QueuedFrame {
     L1L2StabFrame frame;         /* the caller's */
@@ -24,6 +25,7 @@ typedef struct L1L2QueuedFrame {
     bool failed;                 /* measuring met an error */
     L1L2PathFrame path;          /* motion F, in diagonals, and what the path makes of it */
     double F_px[9];              /* the same motion as the caller sees it (units.h) */
+    L1L2ShutterFrame shutter;    /* what the motion leaves */
     int64_t scale_ns, track_ns, fit_ns, solve_ns;
 } L1L2QueuedFrame;
 
@@ -58,7 +60,9 @@ L1L2QueuedFrame *l1l2_frame_queue_newest(const L1L2FrameQueue *queue);
 /* Releases the oldest frame. */
 void l1l2_frame_queue_drop_oldest(L1L2FrameQueue *queue);
 
-/* The field of all frames that the path works on. */
+/* The fields of all frames that the path and the filter work on, and the motions alone. */
 L1L2FrameColumn l1l2_frame_queue_path_frames(const L1L2FrameQueue *queue);
+L1L2FrameColumn l1l2_frame_queue_shutter_frames(const L1L2FrameQueue *queue);
+L1L2FrameColumn l1l2_frame_queue_motions(const L1L2FrameQueue *queue);
 
 #endif

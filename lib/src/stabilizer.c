@@ -85,8 +85,16 @@ static L1L2StabResult build(L1L2Stab *s)
         .interpolation = cfg->interpolation,
         .pool = s->pool,
     };
-    const L1L2ShutterFilterConfig filter = {cfg->rolling_shutter, cfg->width, cfg->height,
-                                     s->out_width, s->out_height, cfg->window, NULL};
+    const L1L2ShutterFilterConfig filter = {
+        .model = cfg->rolling_shutter,
+        .in_width = cfg->width,
+        .in_height = cfg->height,
+        .out_width = s->out_width,
+        .out_height = s->out_height,
+        .capacity = cfg->window,
+        .motions = l1l2_frame_queue_motions(&s->queue),
+        .frames = l1l2_frame_queue_shutter_frames(&s->queue),
+    };
     L1L2StabResult result = l1l2_motion_worker_create(&s->worker, &motion, s->pool);
     if (result == L1L2STAB_OK)
         result = l1l2_path_create(&s->path, &path);
@@ -183,8 +191,7 @@ static void extend_path(L1L2Stab *s, const L1L2MotionResult *motion, const doubl
     record->fit_ns = motion->fit_ns;
     const int64_t start_ns = l1l2_clock_ns();
     l1l2_path_push(s->path, &input);
-    l1l2_shutter_filter_push(s->filter, &record->path.F, motion->has_residual ? &motion->residual : NULL,
-                             input.starts_path);
+    l1l2_shutter_filter_push(s->filter, motion->has_residual ? &motion->residual : NULL, input.starts_path);
     add_solve_time(s, start_ns);
 }
 

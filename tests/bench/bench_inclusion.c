@@ -74,14 +74,17 @@ static void run(const Clip *clip, int model, double ratio, Count *count)
 {
     const L1L2StabLogger log = {0};
     const double diagonal_px = hypot(clip->width, clip->height), rounding_px = 1e-6;
-    static L1L2PathFrame rows[WINDOW + L1L2_PATH_PAST];
+    enum { ROWS = WINDOW + L1L2_SHUTTER_FILTER_PAST };
+    static L1L2PathFrame rows[ROWS];
+    static L1L2ShutterFrame filter_rows[ROWS];
     const L1L2PathConfig path_cfg = {
         .width = clip->width, .height = clip->height, .frame_rate = clip->frame_rate,
         .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
-        .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, WINDOW + L1L2_PATH_PAST},
+        .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, ROWS},
     };
     const L1L2ShutterFilterConfig filter_cfg = {(L1L2StabRollingShutter)model, clip->width, clip->height, clip->width,
-                                         clip->height, WINDOW, NULL};
+                                                clip->height, WINDOW, NULL, {&rows[0].F, sizeof *rows, ROWS},
+                                                {filter_rows, sizeof *filter_rows, ROWS}};
     L1L2Path *path;
     L1L2ShutterFilter *filter;
     L1L2WarpMesh plain;
@@ -94,7 +97,7 @@ static void run(const Clip *clip, int model, double ratio, Count *count)
         const bool starts_path = m->model == L1L2STAB_MOTION_SOURCE_NONE;
         if (t < clip->frames) {
             l1l2_path_push(path, &(L1L2PathInput){&m->F, starts_path, 0.5, ratio});
-            l1l2_shutter_filter_push(filter, &m->F, m->has_residual ? &m->residual : NULL, starts_path);
+            l1l2_shutter_filter_push(filter, m->has_residual ? &m->residual : NULL, starts_path);
         } else {
             l1l2_path_finish(path);
         }

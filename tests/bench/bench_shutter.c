@@ -159,13 +159,17 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
         .format = l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8), .width = WIDTH, .height = HEIGHT, .analysis_size = 640,
         .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .seed = 1, .log = &log, .rolling_shutter = model,
     };
-    static L1L2PathFrame rows[WINDOW + L1L2_PATH_PAST];
+    enum { RECORDS = WINDOW + L1L2_SHUTTER_FILTER_PAST };
+    static L1L2PathFrame rows[RECORDS];
+    static L1L2ShutterFrame filter_rows[RECORDS];
     const L1L2PathConfig path_cfg = {
         .width = WIDTH, .height = HEIGHT, .frame_rate = scene->fps,
         .weights = {1, 1, 1}, .window = WINDOW, .overlap = 2 * WINDOW / 3, .log = &log,
-        .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, WINDOW + L1L2_PATH_PAST},
+        .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, RECORDS},
     };
-    const L1L2ShutterFilterConfig filter_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW, NULL};
+    const L1L2ShutterFilterConfig filter_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW, NULL,
+                                                {&rows[0].F, sizeof *rows, RECORDS},
+                                                {filter_rows, sizeof *filter_rows, RECORDS}};
     L1L2Motion *motion = NULL;
     L1L2Path *path = NULL;
     L1L2ShutterFilter *filter = NULL;
@@ -183,7 +187,7 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
             if (l1l2_motion_push(motion, picture.data[0], picture.stride[0], t == 0, &m) != L1L2STAB_OK)
                 exit(EXIT_FAILURE);
             l1l2_path_push(path, &(L1L2PathInput){&m.F, t == 0, 0.5, crop_ratio});
-            l1l2_shutter_filter_push(filter, &m.F, m.has_residual ? &m.residual : NULL, t == 0);
+            l1l2_shutter_filter_push(filter, m.has_residual ? &m.residual : NULL, t == 0);
         } else {
             l1l2_path_finish(path);
         }

@@ -229,7 +229,11 @@ static void run_clip(const Clip *clip, const Recording *recording, const L1L2Shu
     const L1L2ShutterModel model = {clip->model, 0.5 * WIDTH / diagonal_px(), 0.5 * HEIGHT / diagonal_px(), parameters};
     const int frames = clip->start ? 48 : FRAMES, settled = clip->start ? 1 : SETTLED;
     const int window = clip->start ? 24 : WINDOW;
-    const L1L2ShutterFilterConfig cfg = {clip->model, WIDTH, HEIGHT, WIDTH, HEIGHT, window, parameters};
+    enum { RECORDS = WINDOW + L1L2_SHUTTER_FILTER_PAST };
+    static L1L2Mat motions[RECORDS];
+    static L1L2ShutterFrame rows[RECORDS];
+    const L1L2ShutterFilterConfig cfg = {clip->model, WIDTH, HEIGHT, WIDTH, HEIGHT, window, parameters,
+                                         {motions, sizeof *motions, RECORDS}, {rows, sizeof *rows, RECORDS}};
     L1L2ShutterFilter *filter;
     if (l1l2_shutter_filter_create(&filter, &cfg) != L1L2STAB_OK)
         exit(EXIT_FAILURE);
@@ -250,7 +254,8 @@ static void run_clip(const Clip *clip, const Recording *recording, const L1L2Shu
                 l1l2_shutter_gate_push(&gate, &model, &F, &measurement);
             else
                 l1l2_shutter_gate_break(&gate);
-            l1l2_shutter_filter_push(filter, &F, measured ? &measurement : NULL, t == 0);
+            motions[t % RECORDS] = t > 0 ? F : l1l2_mat_identity();
+            l1l2_shutter_filter_push(filter, measured ? &measurement : NULL, t == 0);
         }
         if (t < window - 1)
             continue;
@@ -393,8 +398,11 @@ static void filter_clip(const RealClip *clip, const L1L2ShutterParameters *param
     const double diagonal = hypot(clip->width, clip->height);
     const L1L2StabRollingShutter kind = L1L2STAB_ROLLING_SHUTTER_MIXTURE;
     const L1L2ShutterModel model = {kind, 0.5 * clip->width / diagonal, 0.5 * clip->height / diagonal, parameters};
-    const L1L2ShutterFilterConfig cfg = {kind,         clip->width, clip->height, clip->width,
-                                         clip->height, WINDOW,      parameters};
+    enum { RECORDS = WINDOW + L1L2_SHUTTER_FILTER_PAST };
+    static L1L2Mat motions[RECORDS];
+    static L1L2ShutterFrame rows[RECORDS];
+    const L1L2ShutterFilterConfig cfg = {kind, clip->width, clip->height, clip->width, clip->height, WINDOW, parameters,
+                                         {motions, sizeof *motions, RECORDS}, {rows, sizeof *rows, RECORDS}};
     static L1L2ShutterGate gate;
     L1L2ShutterFilter *filter;
     if (l1l2_shutter_filter_create(&filter, &cfg) != L1L2STAB_OK)
@@ -409,7 +417,8 @@ static void filter_clip(const RealClip *clip, const L1L2ShutterParameters *param
                 l1l2_shutter_gate_push(&gate, &model, &m->F, &measurement);
             else
                 l1l2_shutter_gate_break(&gate);
-            l1l2_shutter_filter_push(filter, &m->F, m->has_residual ? &measurement : NULL, starts);
+            motions[t % RECORDS] = starts ? l1l2_mat_identity() : m->F;
+            l1l2_shutter_filter_push(filter, m->has_residual ? &measurement : NULL, starts);
         }
         if (t < WINDOW - 1 && t < clip->frames - 1)
             continue;

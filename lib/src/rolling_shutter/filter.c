@@ -40,20 +40,14 @@
  * twice as many changed nothing in bench_shutter_parameters. */
 enum { LOOKAHEAD = 40 };
 
-typedef struct Item {
-    L1L2Mat F;
-    L1L2ShutterMeasurement measurement; /* zero where there is none */
-    bool measured;
-    double weight; /* w_t: 0 where a path starts, 1 where measured, unmeasured_weight elsewhere */
-} Item;
+_Static_assert((int)L1L2_SHUTTER_READOUT_FRAMES <= (int)L1L2_SHUTTER_FILTER_PAST + 1,
+               "the readout is learned from more frames than are kept");
 
 struct L1L2ShutterFilter {
     L1L2ShutterFilterConfig cfg;
     const L1L2ShutterParameters *parameters;
     L1L2ShutterModel model;
     L1L2WarpMesh mesh;
-    Item *items; /* frame t at t modulo capacity */
-    int capacity;
     int64_t pushed, pulled;
     L1L2ShutterResidual last;           /* e of the frame pulled last */
     L1L2ShutterResidual last_predicted; /* k of that frame */
@@ -62,9 +56,14 @@ struct L1L2ShutterFilter {
     L1L2ShutterReadout readout; /* learned with a mixture only */
 };
 
-static Item *item(const L1L2ShutterFilter *filter, int64_t t)
+static L1L2ShutterFrame *frame_at(const L1L2ShutterFilter *filter, int64_t t)
 {
-    return &filter->items[t % filter->capacity];
+    return l1l2_frame_column_at(filter->cfg.frames, t);
+}
+
+static const L1L2Mat *motion_at(const L1L2ShutterFilter *filter, int64_t t)
+{
+    return l1l2_frame_column_at(filter->cfg.motions, t);
 }
 
 L1L2StabResult l1l2_shutter_filter_create(L1L2ShutterFilter **out, const L1L2ShutterFilterConfig *cfg)
@@ -72,6 +71,8 @@ L1L2StabResult l1l2_shutter_filter_create(L1L2ShutterFilter **out, const L1L2Shu
     *out = NULL;
     if (cfg->model == L1L2STAB_ROLLING_SHUTTER_NONE)
         return L1L2STAB_OK;
+    assert(cfg->motions.rows >= cfg->capacity + L1L2_SHUTTER_FILTER_PAST);
+    assert(cfg->frames.rows >= cfg->capacity + L1L2_SHUTTER_FILTER_PAST);
     L1L2ShutterFilter *filter = l1l2_mem_new(1, sizeof *filter);
     if (!filter)
         return L1L2STAB_ERR_NOMEM;
@@ -84,9 +85,7 @@ L1L2StabResult l1l2_shutter_filter_create(L1L2ShutterFilter **out, const L1L2Shu
         .half_h = 0.5 * cfg->in_height / diagonal_px,
         .parameters = cfg->parameters,
     };
-    filter->capacity = cfg->capacity + L1L2_SHUTTER_READOUT_FRAMES;
-    filter->items = l1l2_mem_new((size_t)filter->capacity, sizeof *filter->items);
-    if (!filter->items || !l1l2_warp_mesh_init(&filter->mesh, cfg->out_width, cfg->out_height)) {
+    if (!l1l2_warp_mesh_init(&filter->mesh, cfg->out_width, cfg->out_height)) {
         l1l2_shutter_filter_free(filter);
         return L1L2STAB_ERR_NOMEM;
     }
@@ -99,7 +98,6 @@ void l1l2_shutter_filter_free(L1L2ShutterFilter *filter)
 {
     if (!filter)
         return;
-    l1l2_mem_free(filter->items);
     l1l2_warp_mesh_clear(&filter->mesh);
     l1l2_mem_free(filter);
 }
@@ -130,11 +128,11 @@ static void learn_readout(L1L2ShutterFilter *filter)
     if (t < L1L2_SHUTTER_READOUT_DELAY)
         return;
     for (int j = 0; j < L1L2_SHUTTER_READOUT_FRAMES; j++) {
-        const Item *i = item(filter, t - L1L2_SHUTTER_READOUT_DELAY + j);
-        if (i->weight < 1.0)
+        const int64_t u = t - L1L2_SHUTTER_READOUT_DELAY + j;
+        if (frame_at(filter, u)->weight < 1.0)
             return;
-        around.F[j] = &i->F;
-        around.r[j] = &i->measurement.r;
+        around.F[j] = motion_at(filter, u);
+        around.r[j] = &frame_at(filter, u)->measurement.r;
     }
     l1l2_shutter_readout_learn(&filter->readout, &around);
 }
@@ -158,13 +156,14 @@ static L1L2ShutterResidual predict(const L1L2ShutterFilter *filter, int64_t t, d
     L1L2ShutterResidual k = {{0.0}};
     if (readout == 0.0)
         return k;
-    const Item *here = item(filter, t), *next = t + 1 < filter->pushed ? item(filter, t + 1) : here;
-    const Item *into = here->weight > 0.0 ? here : next, *out = next->weight > 0.0 ? next : here;
+    const int64_t next = t + 1 < filter->pushed ? t + 1 : t;
+    const L1L2Mat *into = motion_at(filter, frame_at(filter, t)->weight > 0.0 ? t : next);
+    const L1L2Mat *out = motion_at(filter, frame_at(filter, next)->weight > 0.0 ? next : t);
     const int entry[3] = {2, 5, 3}; /* of the matrix: x, y, sine of the roll */
     double velocity[3], acceleration[3];
     for (int i = 0; i < 3; i++) {
-        velocity[i] = 0.5 * (into->F.m[entry[i]] + out->F.m[entry[i]]);
-        acceleration[i] = out->F.m[entry[i]] - into->F.m[entry[i]];
+        velocity[i] = 0.5 * (into->m[entry[i]] + out->m[entry[i]]);
+        acceleration[i] = out->m[entry[i]] - into->m[entry[i]];
         /* A caller may give any motion. From one that moves the frame by its diagonal or more, nothing is predicted. */
         if (!(fabs(velocity[i]) + fabs(acceleration[i]) < 2.0))
             return k;
@@ -178,20 +177,18 @@ static L1L2ShutterResidual predict(const L1L2ShutterFilter *filter, int64_t t, d
     return k;
 }
 
-void l1l2_shutter_filter_push(L1L2ShutterFilter *filter, const L1L2Mat *F, const L1L2ShutterMeasurement *measurement,
-                              bool starts_path)
+void l1l2_shutter_filter_push(L1L2ShutterFilter *filter, const L1L2ShutterMeasurement *measurement, bool starts_path)
 {
     if (!filter)
         return;
     assert(filter->pushed - filter->pulled < filter->cfg.capacity);
-    Item *i = item(filter, filter->pushed);
-    memset(i, 0, sizeof *i);
+    L1L2ShutterFrame *frame = frame_at(filter, filter->pushed);
+    memset(frame, 0, sizeof *frame);
     starts_path = starts_path || filter->pushed == 0;
-    i->F = starts_path ? l1l2_mat_identity() : *F;
-    i->measured = measurement && !starts_path && l1l2_shutter_residual_is_finite(&measurement->r);
-    i->weight = starts_path ? 0.0 : i->measured ? 1.0 : filter->parameters->unmeasured_weight;
-    if (i->measured)
-        i->measurement = *measurement;
+    frame->measured = measurement && !starts_path && l1l2_shutter_residual_is_finite(&measurement->r);
+    frame->weight = starts_path ? 0.0 : frame->measured ? 1.0 : filter->parameters->unmeasured_weight;
+    if (frame->measured)
+        frame->measurement = *measurement;
     filter->pushed++;
     if (filter->model.kind == L1L2STAB_ROLLING_SHUTTER_MIXTURE)
         learn_readout(filter);
@@ -216,8 +213,8 @@ static double confidence(const L1L2ShutterFilter *filter, int64_t t, int64_t las
         const int test = gates[k].test;
         double explained = filter->explained[test], all = filter->all[test], fade = 1.0;
         for (int64_t j = t; j <= last; j++, fade *= parameters->confidence_fade) {
-            explained += fade * item(filter, j)->measurement.explained[test];
-            all += fade * item(filter, j)->measurement.all[test];
+            explained += fade * frame_at(filter, j)->measurement.explained[test];
+            all += fade * frame_at(filter, j)->measurement.all[test];
         }
         least = fmin(least, all > 0.0 ? l1l2_shutter_ramp(explained / all, gates[k].ramp) : 0.0);
     }
@@ -232,23 +229,23 @@ static L1L2ShutterResidual estimate(const L1L2ShutterFilter *filter, int64_t t)
     const double readout = l1l2_shutter_filter_readout(filter), leak = filter->parameters->leak;
     const int64_t farthest = t + LOOKAHEAD;
     int64_t last = t; /* of the path, as far as it is known and matters */
-    while (last + 1 < filter->pushed && last < farthest && item(filter, last + 1)->weight > 0.0)
+    while (last + 1 < filter->pushed && last < farthest && frame_at(filter, last + 1)->weight > 0.0)
         last++;
     const double trusted = confidence(filter, t, last);
     double q = 0.0;
     L1L2ShutterResidual k = predict(filter, last, readout), r = {{0.0}}, e = {{0.0}};
     for (int64_t j = last; j >= t; j--) {
-        const Item *i = item(filter, j);
+        const L1L2ShutterFrame *frame = frame_at(filter, j);
         const L1L2ShutterResidual before = j > t ? predict(filter, j - 1, readout) : filter->last_predicted;
-        const double own = leak + q, measured = i->measured ? trusted : 0.0;
+        const double own = leak + q, measured = frame->measured ? trusted : 0.0;
         for (int p = 0; p < size; p++) {
             const double c = (leak * k.p[p] + q * r.p[p]) / own;
-            const double m = measured * i->measurement.r.p[p] + (1.0 - measured) * (k.p[p] - before.p[p]);
+            const double m = measured * frame->measurement.r.p[p] + (1.0 - measured) * (k.p[p] - before.p[p]);
             if (j == t)
-                e.p[p] = (own * c + i->weight * (filter->last.p[p] + m)) / (own + i->weight);
+                e.p[p] = (own * c + frame->weight * (filter->last.p[p] + m)) / (own + frame->weight);
             r.p[p] = c - m;
         }
-        q = i->weight * own / (i->weight + own);
+        q = frame->weight * own / (frame->weight + own);
         k = before;
     }
     return e;
@@ -269,7 +266,7 @@ const L1L2ShutterResidual *l1l2_shutter_filter_pull(L1L2ShutterFilter *filter)
     if (!filter)
         return NULL;
     assert(filter->pulled < filter->pushed);
-    const Item *now = item(filter, filter->pulled);
+    const L1L2ShutterFrame *now = frame_at(filter, filter->pulled);
     if (now->weight == 0.0)
         forget_explained(filter);
     filter->last = estimate(filter, filter->pulled);

@@ -23,10 +23,21 @@
 #ifndef L1L2_ROLLING_SHUTTER_FILTER_H
 #define L1L2_ROLLING_SHUTTER_FILTER_H
 
+#include "common/frame_column.h"
 #include "rolling_shutter/model.h"
 #include "warp/mesh.h"
 
 typedef struct L1L2ShutterFilter L1L2ShutterFilter;
+
+/* What the filter knows of a frame: its part of the frame's record. Nobody else writes it. */
+typedef struct L1L2ShutterFrame {
+    L1L2ShutterMeasurement measurement; /* zero where there is none */
+    bool measured;
+    double weight; /* w_t: 0 where a path starts, 1 where measured, unmeasured_weight elsewhere */
+} L1L2ShutterFrame;
+
+/* Frames before the newest one that the filter still reads, even if they have been pulled. */
+enum { L1L2_SHUTTER_FILTER_PAST = 8 };
 
 typedef struct L1L2ShutterFilterConfig {
     L1L2StabRollingShutter model;
@@ -34,6 +45,9 @@ typedef struct L1L2ShutterFilterConfig {
     int out_width, out_height; /* of the output frames, pixels */
     int capacity;              /* frames between push and pull, at most */
     const L1L2ShutterParameters *parameters; /* NULL: the defaults. Must outlive the filter */
+    /* The records, with at least capacity + L1L2_SHUTTER_FILTER_PAST rows, which must outlive the filter: */
+    L1L2FrameColumn motions; /* of L1L2Mat: the motion F of each frame, unit the frame's diagonal; only read */
+    L1L2FrameColumn frames;  /* of L1L2ShutterFrame */
 } L1L2ShutterFilterConfig;
 
 /* Creates a filter; free it with l1l2_shutter_filter_free(). *out is NULL on error (NOMEM), and with model NONE, which
@@ -44,11 +58,11 @@ void l1l2_shutter_filter_free(L1L2ShutterFilter *filter);
 /* Makes the filter as good as new. Keeps its memory. */
 void l1l2_shutter_filter_reset(L1L2ShutterFilter *filter);
 
-/* Takes the next frame. F: its motion, unit the frame's diagonal. measurement: the residual of F; NULL where it was not
- * measured; numbers that are not finite count as not measured. starts_path: F and the measurement mean nothing. At most
- * `capacity` frames may wait. */
-void l1l2_shutter_filter_push(L1L2ShutterFilter *filter, const L1L2Mat *F, const L1L2ShutterMeasurement *measurement,
-                              bool starts_path);
+/* Takes the next frame; the first one after create or reset is number 0. Its motion is in its row already: the identity
+ * where a path starts. measurement: the residual of that motion; NULL where it was not measured; numbers that are not
+ * finite count as not measured. starts_path: there is no motion, and the measurement means nothing. At most `capacity`
+ * frames may wait. */
+void l1l2_shutter_filter_push(L1L2ShutterFilter *filter, const L1L2ShutterMeasurement *measurement, bool starts_path);
 
 /* Returns the residual of the oldest frame, estimated from all frames that have been pushed. There must be one. It is
  * finite, valid until the next pull or reset, and what l1l2_shutter_filter_mesh() uses. */

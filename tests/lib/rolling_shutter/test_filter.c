@@ -11,12 +11,34 @@ enum { WIDTH = 640, HEIGHT = 360, WINDOW = 60 };
 static const double pi = 3.14159265358979;
 static const double diagonal_px = 734.30239;
 
-static L1L2ShutterFilter *filter_new(L1L2StabRollingShutter model, int window)
+/* The records of the filter's frames: no two filters of a test live at a time. */
+static L1L2Mat motions[WINDOW + L1L2_SHUTTER_FILTER_PAST];
+static L1L2ShutterFrame frames_of_filter[WINDOW + L1L2_SHUTTER_FILTER_PAST];
+
+static L1L2ShutterFilterConfig config(L1L2StabRollingShutter model)
 {
-    const L1L2ShutterFilterConfig cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, window, NULL};
+    enum { ROWS = WINDOW + L1L2_SHUTTER_FILTER_PAST };
+    return (L1L2ShutterFilterConfig){
+        .model = model, .in_width = WIDTH, .in_height = HEIGHT, .out_width = WIDTH, .out_height = HEIGHT,
+        .capacity = WINDOW, .motions = {motions, sizeof *motions, ROWS},
+        .frames = {frames_of_filter, sizeof *frames_of_filter, ROWS},
+    };
+}
+
+static L1L2ShutterFilter *filter_new(L1L2StabRollingShutter model)
+{
+    const L1L2ShutterFilterConfig cfg = config(model);
     L1L2ShutterFilter *filter;
     ck_assert_int_eq(l1l2_shutter_filter_create(&filter, &cfg), L1L2STAB_OK);
     return filter;
+}
+
+/* Frame t. */
+static void push(L1L2ShutterFilter *filter, int t, const L1L2Mat *F, const L1L2ShutterMeasurement *measurement,
+                 bool starts_path)
+{
+    motions[t % (WINDOW + L1L2_SHUTTER_FILTER_PAST)] = starts_path ? l1l2_mat_identity() : *F;
+    l1l2_shutter_filter_push(filter, measurement, starts_path);
 }
 
 /* A camera that swings sideways. */
@@ -49,14 +71,14 @@ static L1L2ShutterMeasurement measurement_of(const Swing *s, int t, L1L2Mat *F)
 /* Filters a swing. Returns the rms error of the bands' residual, px; *without: the rms of that residual itself. */
 static double run_swing(const Swing *s, int frames, double *readout, double *without)
 {
-    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE);
     double sum = 0.0, all = 0.0;
     int count = 0;
     for (int t = 0, out = 0; out < frames; t++) {
         L1L2Mat F;
         const L1L2ShutterMeasurement measurement = measurement_of(s, t, &F);
         if (t < frames)
-            l1l2_shutter_filter_push(filter, &F, t > 0 ? &measurement : NULL, t == 0);
+            push(filter, t, &F, t > 0 ? &measurement : NULL, t == 0);
         if (t < WINDOW - 1)
             continue;
         const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(filter);
@@ -102,14 +124,14 @@ END_TEST
 
 START_TEST(frames_that_were_not_measured_and_cuts_leave_the_residual_bounded)
 {
-    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE);
     const Swing swing = {4.0 / diagonal_px, 0.1, 0.7};
     for (int t = 0, out = 0; out < 200; t++) {
         L1L2Mat F;
         const L1L2ShutterMeasurement measurement = measurement_of(&swing, t, &F);
         const bool cut = t == 0 || t == 100;
         if (t < 200)
-            l1l2_shutter_filter_push(filter, &F, cut || t % 17 == 0 ? NULL : &measurement, cut);
+            push(filter, t, &F, cut || t % 17 == 0 ? NULL : &measurement, cut);
         if (t < WINDOW - 1)
             continue;
         const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(filter);
@@ -126,14 +148,14 @@ START_TEST(a_residual_that_fails_one_validation_test_is_not_used)
 {
     const int silent[] = {L1L2_SPLIT_HALVES, L1L2_SPLIT_COLUMNS, L1L2_VALIDATION_CAMERA};
     for (int i = 0; i < 3; i++) {
-        L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+        L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE);
         const L1L2Mat F = l1l2_mat_translation(0.01, 0.0);
         L1L2ShutterMeasurement measurement = {
             {{0.001, 0.002, 0.003, 0.001}}, {0.9, 0.9, 0.9, 0.9}, {1.0, 1.0, 1.0, 1.0},
         };
         measurement.explained[silent[i]] = 0.0;
         for (int t = 0; t < WINDOW; t++)
-            l1l2_shutter_filter_push(filter, &F, &measurement, t == 0);
+            push(filter, t, &F, &measurement, t == 0);
         for (int t = 0; t < WINDOW; t++) {
             const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(filter);
             for (int k = 0; k < L1L2_SHUTTER_SIZE; k++)
@@ -149,14 +171,14 @@ START_TEST(the_shear_of_a_fast_pan_is_limited_to_3_percent)
     const L1L2ShutterModel model = {L1L2STAB_ROLLING_SHUTTER_MIXTURE, 0.5 * WIDTH / diagonal_px,
                                      0.5 * HEIGHT / diagonal_px, NULL};
     const Swing swing = {4.0 / diagonal_px, 0.06, 0.7};
-    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE);
     double most = 0.0;
     for (int t = 0, out = 0; out < 240; t++) {
         L1L2Mat F;
         const L1L2ShutterMeasurement measurement = measurement_of(&swing, t, &F);
         F.m[2] += 40.0 / diagonal_px; /* a shear of 28 px, 8 % */
         if (t < 240)
-            l1l2_shutter_filter_push(filter, &F, t > 0 ? &measurement : NULL, t == 0);
+            push(filter, t, &F, t > 0 ? &measurement : NULL, t == 0);
         if (t < WINDOW - 1)
             continue;
         most = fmax(most, l1l2_shutter_residual_stretch(&model, l1l2_shutter_filter_pull(filter)));
@@ -169,14 +191,14 @@ END_TEST
 
 START_TEST(a_residual_that_explains_nothing_is_not_used)
 {
-    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY, WINDOW);
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_HOMOGRAPHY);
     const L1L2Mat F = l1l2_mat_translation(0.01, 0.0), map = l1l2_mat_similarity(0.9, 0.01, 3.0, 2.0);
     double reach;
     for (int t = 0; t < WINDOW; t++) {
         const L1L2ShutterMeasurement measurement = {
             {{0.001, 0.002, 0.003, 0.001}}, {-0.1, -0.1, -0.1, -0.1}, {1.0, 1.0, 1.0, 1.0},
         };
-        l1l2_shutter_filter_push(filter, &F, &measurement, t == 0);
+        push(filter, t, &F, &measurement, t == 0);
     }
     for (int t = 0; t < WINDOW; t++) {
         l1l2_shutter_filter_pull(filter);
@@ -190,13 +212,13 @@ END_TEST
 START_TEST(a_filter_that_was_reset_is_as_good_as_new)
 {
     const Swing swing = {4.0 / diagonal_px, 0.1, 0.7};
-    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE);
     L1L2ShutterResidual first[2];
     for (int run = 0; run < 2; run++) {
         for (int t = 0; t < WINDOW; t++) {
             L1L2Mat F;
             const L1L2ShutterMeasurement measurement = measurement_of(&swing, t, &F);
-            l1l2_shutter_filter_push(filter, &F, &measurement, t == 0);
+            push(filter, t, &F, &measurement, t == 0);
         }
         for (int t = 0; t < 30; t++)
             first[run] = *l1l2_shutter_filter_pull(filter);
@@ -209,14 +231,14 @@ END_TEST
 
 START_TEST(with_model_none_there_is_no_filter_and_all_functions_take_null)
 {
-    const L1L2ShutterFilterConfig cfg = {L1L2STAB_ROLLING_SHUTTER_NONE, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW, NULL};
+    const L1L2ShutterFilterConfig cfg = config(L1L2STAB_ROLLING_SHUTTER_NONE);
     const L1L2Mat map = l1l2_mat_identity();
     L1L2ShutterFilter *filter;
     double reach = 1.0;
     ck_assert_int_eq(l1l2_shutter_filter_create(&filter, &cfg), L1L2STAB_OK);
     ck_assert_ptr_null(filter);
     l1l2_shutter_filter_reset(filter);
-    l1l2_shutter_filter_push(filter, &map, NULL, true);
+    l1l2_shutter_filter_push(filter, NULL, true);
     ck_assert_ptr_null(l1l2_shutter_filter_pull(filter));
     ck_assert_ptr_null(l1l2_shutter_filter_mesh(filter, &map, 1.0, &reach));
     ck_assert_double_eq(reach, 0.0);
@@ -321,7 +343,7 @@ END_TEST
 static double error_after(bool huge_motion, bool measurement_is_nan)
 {
     const Swing swing = {4.0 / diagonal_px, 0.06, 0.7};
-    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE, WINDOW);
+    L1L2ShutterFilter *filter = filter_new(L1L2STAB_ROLLING_SHUTTER_MIXTURE);
     double largest = 0.0;
     for (int t = 0, out = 0; out < 300; t++) {
         L1L2Mat F;
@@ -332,7 +354,7 @@ static double error_after(bool huge_motion, bool measurement_is_nan)
         if (odd && measurement_is_nan)
             measurement.r.p[L1L2_SHUTTER_X + 3] = NAN;
         if (t < 300)
-            l1l2_shutter_filter_push(filter, &F, t > 0 && !(odd && huge_motion) ? &measurement : NULL, t == 0);
+            push(filter, t, &F, t > 0 && !(odd && huge_motion) ? &measurement : NULL, t == 0);
         if (t < WINDOW - 1)
             continue;
         const L1L2ShutterResidual *e = l1l2_shutter_filter_pull(filter);

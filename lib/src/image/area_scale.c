@@ -33,7 +33,10 @@ struct L1L2AreaScaler {
     bool pairs;         /* one component, halved across */
     int components;     /* of a pixel */
     Axis x, y;
+    L1L2FormatInfo format;
+    uint32_t base;      /* subtracted from a column's sum, what is less becomes 0 */
     int shift;          /* low bits of a column's sum that are rounded off, so that 15 bits remain */
+    int whole;          /* the sum of the weights of an output across */
     int taps;           /* samples that an output sums across, rounded up to a whole block */
     int count;          /* outputs of a row, rounded up to a whole block */
     float half, scale;  /* output = (sum across + half) * scale, cut to an integer */
@@ -90,17 +93,25 @@ static int set_weights(L1L2AreaScaler *s, const double *grey)
     return whole;
 }
 
-/* Chooses the shift that makes a column's sum fit 15 bits, and the scale that brings sums back to 8 bits. */
-static void set_precision(L1L2AreaScaler *s, const L1L2FormatInfo *format)
+/* Of one component, only the levels in the range have to fit 15 bits. Where several are mixed, they all have to. */
+void l1l2_image_scale_set_levels(L1L2AreaScaler *s, L1L2Levels levels)
 {
-    const int depth = format->depth + format->shift; /* bits of a sample, its unused low bits included */
-    const uint32_t highest = ((1u << format->depth) - 1) << format->shift, most = highest * (uint32_t)s->y.total;
+    const bool stretched = !l1l2_image_levels_equal(levels, l1l2_image_levels_full(&s->format));
+    const bool cut = stretched && s->components == 1;
+    const uint32_t total = (uint32_t)s->y.total, highest = ((1u << s->format.depth) - 1) << s->format.shift;
+    const uint32_t most = total * (cut ? (uint32_t)(levels.high - levels.low) : highest);
+    s->base = cut ? (uint32_t)levels.low * total : 0;
+    s->shift = 0;
     while ((most + (1u << s->shift >> 1)) >> s->shift > COLUMN_MAX)
         s->shift++;
     s->narrow = !s->deep && s->shift == 0;
-    const double unit = ldexp((double)set_weights(s, format->grey) * s->y.total, depth - 8 - s->shift);
+    const double level = ldexp((double)s->whole * s->y.total, -s->shift);
+    const double unit = level * (levels.high - levels.low) / 256.0;
+    const double offset = cut ? 0.0 : level * levels.low;
+    /* The margin makes exact halves round up in spite of float's own rounding. */
+    const double margin = stretched ? fmin(0.25, unit / 256.0) : 0.25;
     s->scale = (float)(1.0 / unit);
-    s->half = (float)(0.5 * unit + 0.25); /* the 0.25 makes exact halves round up in spite of float's own rounding */
+    s->half = (float)(0.5 * unit + margin - offset);
 }
 
 L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, int height, int out_width, int out_height)
@@ -110,6 +121,7 @@ L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, in
         return NULL;
     const int block = L1L2_AREA_SCALE_BLOCK;
     l1l2_image_scale_functions_init(&s->functions, l1l2_cpu_features());
+    s->format = *format;
     s->deep = format->depth > 8;
     s->components = l1l2_image_format_pixel_components(format);
     s->x = axis_new(width, out_width);
@@ -130,7 +142,8 @@ L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, in
         l1l2_image_scale_free(s);
         return NULL;
     }
-    set_precision(s, format);
+    s->whole = set_weights(s, format->grey);
+    l1l2_image_scale_set_levels(s, l1l2_image_levels_full(format));
     return s;
 }
 
@@ -184,6 +197,16 @@ static void round_columns(const uint32_t *sum, int count, int shift, int16_t *re
     }
 }
 
+/* The same above a base. */
+static void round_columns_above(const uint32_t *sum, uint32_t base, int count, int shift, int16_t *restrict column)
+{
+    const uint32_t half = 1u << shift >> 1;
+    for (int i = 0; i < count; i++) {
+        const uint32_t rounded = ((sum[i] > base ? sum[i] - base : 0) + half) >> shift;
+        column[i] = (int16_t)(rounded < COLUMN_MAX ? rounded : COLUMN_MAX);
+    }
+}
+
 static void add_pairs(const int16_t *column, int count, int32_t *restrict across)
 {
     for (int x = 0; x < count; x++)
@@ -194,7 +217,7 @@ static void round_outputs(const int32_t *across, int count, float half, float sc
 {
     for (int x = 0; x < count; x++) {
         const int32_t level = (int32_t)(((float)across[x] + half) * scale);
-        out[x] = (uint8_t)(level < UINT8_MAX ? level : UINT8_MAX);
+        out[x] = (uint8_t)(level < 0 ? 0 : level < UINT8_MAX ? level : UINT8_MAX);
     }
 }
 
@@ -217,7 +240,9 @@ void l1l2_image_scale_run(L1L2AreaScaler *s, const uint8_t *data, ptrdiff_t stri
             else
                 add_bytes(row, weight, samples, j == first, s->sum);
         }
-        if (!s->narrow)
+        if (s->base > 0)
+            round_columns_above(s->sum, s->base, samples, s->shift, s->column);
+        else if (!s->narrow)
             round_columns(s->sum, samples, s->shift, s->column);
         if (s->pairs)
             add_pairs(s->column, s->x.to, s->across);

@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "image/format.h"
+#include "image/level_range.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -27,6 +28,10 @@ typedef struct L1L2AreaScaler L1L2AreaScaler;
 L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, int height, int out_width,
                                      int out_height);
 void l1l2_image_scale_free(L1L2AreaScaler *s);
+
+/* From now on the picture is stretched: [low, high) of the source's levels becomes [0, 256) of the grey picture, and
+ * what is beyond is cut off. At first it is the full range. */
+void l1l2_image_scale_set_levels(L1L2AreaScaler *s, L1L2Levels levels);
 
 /* Writes the grey picture, 8 bits a pixel, to out. Strides are in bytes, of any sign and parity; data may have any
  * alignment, also where a component has two bytes. A scaler is used by one thread at a time. */

@@ -22,6 +22,7 @@
 #include "common/log.h"
 #include "common/cpu.h"
 #include "image/area_scale.h"
+#include "image/level_range.h"
 #include "motion/pyramid.h"
 
 namespace {
@@ -45,6 +46,9 @@ struct L1L2Vision {
     L1L2LkFunctions lucas_kanade{};
     Scaler to_gray{nullptr, l1l2_image_scale_free}, to_thumbnail{nullptr, l1l2_image_scale_free};
     Pyramid pyramid{nullptr, l1l2_motion_pyramid_free}, previous_pyramid{nullptr, l1l2_motion_pyramid_free};
+    L1L2LevelRange range{};                  /* of levels that the frames use */
+    L1L2Levels levels{};                     /* to which the current picture is stretched */
+    bool stretched = false;                  /* it was logged */
     int pictures = 0;                        /* taken since reset, at most 2 matter */
     cv::Rect active;                         /* the picture without its bars, of the downscaled size */
     cv::Mat mask;                            /* of corners: 0 where none is wanted */
@@ -105,6 +109,30 @@ bool inside(const L1L2Vision *v, cv::Point2f p)
 {
     return p.x >= v->active.x && p.y >= v->active.y && p.x <= v->active.x + v->active.width - 1 &&
            p.y <= v->active.y + v->active.height - 1;
+}
+
+/* A deep picture is stretched to the levels that the frames use, so that raw counts that span a small part of their
+ * range can be tracked. Two pictures are compared at one stretch: if it changes, the previous picture is converted. */
+void stretch_levels(L1L2Vision *v, const uint8_t *data, ptrdiff_t stride)
+{
+    const L1L2FormatInfo *format = v->cfg.format;
+    const L1L2Levels old = v->levels;
+    v->levels = l1l2_image_levels_push(&v->range, format, data, stride, v->cfg.width, v->cfg.height);
+    if (l1l2_image_levels_equal(old, v->levels))
+        return;
+    l1l2_image_scale_set_levels(v->to_gray.get(), v->levels);
+    if (!v->stretched && !l1l2_image_levels_equal(v->levels, l1l2_image_levels_full(format))) {
+        v->stretched = true;
+        l1l2_log(v->cfg.log, L1L2STAB_LOG_INFO,
+                 "motion: the frames use few of their levels; the tracked picture is stretched to %d to %d of %d",
+                 v->levels.low, v->levels.high, l1l2_image_levels_full(format).high);
+    }
+    if (v->pictures == 0)
+        return;
+    const double unit = v->levels.high - v->levels.low, gain = (old.high - old.low) / unit;
+    cv::Mat base = picture_of(v->previous_pyramid, 0);
+    base.convertTo(base, CV_8U, gain, 256.0 * (old.low - v->levels.low) / unit);
+    l1l2_motion_pyramid_build(v->previous_pyramid.get());
 }
 
 /* Lucas-Kanade assumes that a point keeps its brightness. If a flash, a lamp or the camera's exposure changed the whole
@@ -301,6 +329,7 @@ L1L2StabResult l1l2_vision_create(L1L2Vision **out, const L1L2VisionConfig *cfg)
         v->pyramid = pyramid(v->size);
         v->previous_pyramid = pyramid(v->size);
         v->to_gray = scaler(cfg->format, cv::Size(cfg->width, cfg->height), v->size);
+        v->levels = l1l2_image_levels_full(cfg->format);
         v->to_thumbnail = scaler(l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8), v->size,
                                  cv::Size(L1L2_THUMBNAIL_W, L1L2_THUMBNAIL_H));
         *out = v.release();
@@ -315,6 +344,7 @@ void l1l2_vision_free(L1L2Vision *v)
 void l1l2_vision_reset(L1L2Vision *v)
 {
     v->pictures = 0;
+    v->range = L1L2LevelRange{};
     v->active = cv::Rect(cv::Point(), v->size);
 }
 
@@ -328,6 +358,7 @@ L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t
 {
     return guard(v->cfg.log, [&] {
         std::swap(v->pyramid, v->previous_pyramid);
+        stretch_levels(v, data, stride);
         l1l2_image_scale_run(v->to_gray.get(), data, stride, v->pyramid->grey[0], v->pyramid->level[0].stride);
         l1l2_motion_pyramid_build(v->pyramid.get());
         v->pictures = std::min(v->pictures + 1, 2);

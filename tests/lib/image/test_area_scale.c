@@ -136,6 +136,37 @@ START_TEST(packed_components_are_mixed_as_well)
 }
 END_TEST
 
+/* Stretched, all levels of the source from low to high lie within the range, so nothing is cut off. */
+START_TEST(a_stretched_picture_is_the_mean_of_its_area)
+{
+    static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_GRAY16_LE, L1L2STAB_FORMAT_I420_12LE,
+                                             L1L2STAB_FORMAT_P010_10LE, L1L2STAB_FORMAT_RGBA64_LE};
+    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
+        Trial t = trial_new(formats[k], sizes[_i][0], sizes[_i][1], sizes[_i][2], sizes[_i][3]);
+        const int depth = t.format->depth, shift = t.format->shift, span = 1 << (depth - 5);
+        const int low = 3 << (depth - 3), count = (int)(t.stride * t.height / 2);
+        uint16_t *sample = (uint16_t *)(void *)t.data;
+        for (int i = 0; i < count; i++)
+            sample[i] = (uint16_t)((low + (sample[i] >> shift) % span) << shift);
+        const L1L2Levels levels = {low << shift, (low + span) << shift};
+        L1L2AreaScaler *s = l1l2_image_scale_new(t.format, t.width, t.height, t.out_width, t.out_height);
+        ck_assert_ptr_nonnull(s);
+        l1l2_image_scale_set_levels(s, levels);
+        l1l2_image_scale_run(s, t.data, t.stride, t.out, t.out_stride);
+        /* Mixed colors keep the precision of the full range: 15 bits for a column. */
+        const double bound = 0.5 + (l1l2_image_format_pixel_components(t.format) == 1 ? 1.0 / 128 : 1.0);
+        const double from = levels.low * ldexp(1.0, 8 - depth - shift);
+        for (int y = 0; y < t.out_height; y++)
+            for (int x = 0; x < t.out_width; x++) {
+                const double expected = fmin((mean(&t, x, y) - from) * 32.0, 255.0);
+                ck_assert_double_le(fabs(t.out[t.out_stride * y + x] - expected), bound);
+            }
+        l1l2_image_scale_free(s);
+        trial_free(&t);
+    }
+}
+END_TEST
+
 /* The expected mean is computed in integers alone: sums of parts, halves rounded up. */
 START_TEST(factors_of_few_parts_are_exact)
 {
@@ -288,6 +319,7 @@ int main(void)
     tcase_set_timeout(tc, 60);
     tcase_add_loop_test(tc, one_component_is_the_mean_of_its_area_rounded_once, 0, SIZES);
     tcase_add_loop_test(tc, packed_components_are_mixed_as_well, 0, SIZES);
+    tcase_add_loop_test(tc, a_stretched_picture_is_the_mean_of_its_area, 0, SIZES);
     tcase_add_test(tc, factors_of_few_parts_are_exact);
     tcase_add_loop_test(tc, flat_stays_flat, 0, SIZES);
     tcase_add_test(tc, bytes_and_the_same_levels_in_ten_bits_give_the_same_picture);

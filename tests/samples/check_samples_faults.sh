@@ -52,7 +52,8 @@ has_ended() { ! kill -0 "$pid" 2>/dev/null; }
 
 # slowly IN OUT: starts stabilize-file with settings that take long, and waits until its temporary file exists
 slowly() {
-  "$stabilize_file" --interpolation=lanczos --window=20 --overlap=19 "$1" "$2" 2>said &
+  # A test that runs under nohup would pass on that SIGHUP is ignored.
+  env --default-signal=HUP "$stabilize_file" --interpolation=lanczos --window=20 --overlap=19 "$1" "$2" 2>said &
   pid=$!
   wait_for 20 temporary_exists || fail "no temporary file for $2: $(cat said)"
 }

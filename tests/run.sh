@@ -9,14 +9,15 @@ set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 setup=()
-suites=()
+test_options=()
 build=$top/build
 if [[ ${1:-} == --sanitize ]]; then
   shift
   build=$top/build-sanitize
   # clang does not link a sanitizer's runtime into a shared library, so undefined symbols have to be allowed there.
   setup=(-Db_sanitize=address,undefined -Db_lundef=false -Dbuildtype=debugoptimized)
-  [[ $# -gt 0 ]] || suites=(--suite lib --suite plugin)
+  test_options=(--timeout-multiplier 4)
+  [[ $# -gt 0 ]] || test_options+=(--suite lib --suite plugin)
   export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1}
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-halt_on_error=1:print_stacktrace=1}
 fi
@@ -27,6 +28,6 @@ log=$build/meson-logs/testlog.json
 
 rm -f "$log"
 status=0
-meson test -C "$build" --no-rebuild --print-errorlogs "${suites[@]}" "$@" </dev/null || status=$?
+meson test -C "$build" --no-rebuild --print-errorlogs "${test_options[@]}" "$@" </dev/null || status=$?
 python3 "$top/tests/totals.py" "$log" || status=1
 exit "$status"

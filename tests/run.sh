@@ -16,7 +16,8 @@ if [[ ${1:-} == --sanitize ]]; then
   build=$top/build-sanitize
   # clang does not link a sanitizer's runtime into a shared library, so undefined symbols have to be allowed there.
   setup=(-Db_sanitize=address,undefined -Db_lundef=false -Dbuildtype=debugoptimized)
-  test_options=(--timeout-multiplier 4)
+  test_options=(--timeout-multiplier 10)
+  export CK_TIMEOUT_MULTIPLIER=10 # for the timeout that Check has for each test of a program
   [[ $# -gt 0 ]] || test_options+=(--suite lib --suite plugin)
   export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1}
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-halt_on_error=1:print_stacktrace=1}

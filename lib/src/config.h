@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Defaults, checks and what follows from a configuration alone. */
+/* The configuration: its defaults, its checks, and the values that follow from it. */
 #ifndef L1L2_CONFIG_H
 #define L1L2_CONFIG_H
 

@@ -4,7 +4,8 @@
  * has a fixed capacity and gives each frame back to its owner exactly once.
  *
  * Frames are numbered from 0 since create or reset. The camera path and the rolling-shutter filter work on their fields
- * of these records (common/frame_column.h). They look back on a few pulled frames, so the numbers of those stay.
+ * of these records (common/frame_column.h). They still read a few frames after these have been pulled, so their records
+ * are kept for a while.
  */
 #ifndef L1L2_FRAME_QUEUE_H
 #define L1L2_FRAME_QUEUE_H
@@ -32,11 +33,11 @@ typedef struct L1L2QueuedFrame {
 typedef struct L1L2FrameQueue {
     L1L2QueuedFrame *records; /* frame t is at t modulo rows */
     int capacity;             /* frames that can be held */
-    int rows;                 /* these, and the past ones whose numbers stay */
+    int rows;                 /* capacity and L1L2_FRAME_QUEUE_PAST */
     int64_t begin, end;       /* held are the frames t with begin <= t < end */
 } L1L2FrameQueue;
 
-enum { L1L2_FRAME_QUEUE_PAST = 8 }; /* pulled frames whose numbers stay */
+enum { L1L2_FRAME_QUEUE_PAST = 8 }; /* pulled frames whose records are kept */
 
 /* False when out of memory. */
 bool l1l2_frame_queue_init(L1L2FrameQueue *queue, int capacity);

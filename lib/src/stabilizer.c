@@ -40,8 +40,8 @@ struct L1L2Stab {
     L1L2Warp *warp;
     L1L2FrameQueue queue;
     bool finished;
-    int hurried;               /* of the held frames, the oldest, which are ready whatever comes */
-    L1L2StabResult error;      /* the first that measuring met and l1l2stab_take_error() has not returned */
+    int hurried;               /* number of the oldest held frames that are ready although the window is not full */
+    L1L2StabResult error;      /* of measuring: the first that l1l2stab_take_error() has not yet returned */
     L1L2Mat camera, smooth;    /* C_t and P_t of the frame pulled last relative to its path's first: for display only */
     L1L2Fade bypass;
     double lambda, crop_ratio; /* of the frames that are pushed from now on */
@@ -164,7 +164,7 @@ void l1l2stab_reset(L1L2Stab *s)
     l1l2_fade_next(&s->bypass, true);
 }
 
-/* Solving a window costs the frame that has waited longest. */
+/* The time of solving a window is counted on the oldest frame. */
 static void add_solve_time(L1L2Stab *s, int64_t start_ns)
 {
     l1l2_frame_queue_oldest(&s->queue)->solve_ns += l1l2_clock_ns() - start_ns;

@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The border between the library's unit, the frame's diagonal, and the caller's, the pixel. Maps cross it here alone.
+ * Conversion between the library's unit, the frame's diagonal, and the caller's unit, the pixel. No other file converts
+ * maps.
  *
- * Whoever gives a reported motion back must get the same path, bit for bit, and what is given must be reported as it
- * was given. A number in diagonals cannot do this alone: both conversions round, and several pixel values may share one
- * value in diagonals. So a motion's record keeps the pixel value that the caller sees, and the library uses the motion
- * that import makes of it: also for a measured motion, which is exported first.
+ * A reported motion that is given in another run must make the same path, bit for bit. A given motion must be reported
+ * as it was given. Both conversions round, and several pixel values can share one value in diagonals. So a frame's
+ * record keeps the motion in pixels, as the caller sees it, and the library uses l1l2_units_import() of that. A
+ * measured motion is first converted to pixels and then back.
  */
 #ifndef L1L2_UNITS_H
 #define L1L2_UNITS_H
 
 #include "common/geom.h"
 
-/* A map in diagonals as the caller's, in pixels; rounded. */
+/* Converts a map from diagonals to pixels; rounds. */
 void l1l2_units_export(const L1L2Mat *m, double diagonal_px, double px[9]);
 
-/* A map in pixels as the library's; rounded. */
+/* Converts a map from pixels to diagonals; rounds. */
 L1L2Mat l1l2_units_import(const double px[9], double diagonal_px);
 
 #endif

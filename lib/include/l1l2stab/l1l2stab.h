@@ -23,9 +23,9 @@
  *   whatever `threads` is.
  *
  * Errors
- *   A call that returns an error < 0 has changed nothing, and the stream can go on. What one frame's measurement meets
- *   (no memory) is an error of no call, because later calls find it: that frame starts a path,
- *   L1L2STAB_INFO_MOTION_FAILED marks it, and l1l2stab_take_error() returns the error. No frame is lost.
+ *   A call that returns an error < 0 has changed nothing, and the stream can go on. If a frame's motion cannot be
+ *   measured (no memory), no call returns that error, because measuring may go on after the push. Instead a path starts
+ *   at that frame, L1L2STAB_INFO_MOTION_FAILED marks it, and l1l2stab_take_error() returns the error. No frame is lost.
  *
  * Growth
  *   L1L2StabConfig and L1L2StabFrame grow at their ends and carry their size; L1L2StabInfo grows into its reserved
@@ -65,7 +65,7 @@
 extern "C" {
 #endif
 
-/* Of this header; l1l2stab_version() tells the library's. meson.build reads these three. */
+/* The version of this header; l1l2stab_version() returns that of the library. meson.build reads these three. */
 #define L1L2STAB_VERSION_MAJOR 0
 #define L1L2STAB_VERSION_MINOR 2
 #define L1L2STAB_VERSION_PATCH 0
@@ -77,17 +77,17 @@ typedef enum L1L2StabResult {
     L1L2STAB_OK = 0,
     L1L2STAB_AGAIN = 1,            /* pull: push more first; push: pull first */
     L1L2STAB_EOS = 2,              /* finished, and every frame has been pulled */
-    L1L2STAB_ERR_ARGUMENT = -1,    /* the caller's: a value out of range, a NULL; the log says which */
-    L1L2STAB_ERR_STATE = -2,       /* the caller's: a call out of order, such as push after finish */
-    L1L2STAB_ERR_UNSUPPORTED = -3, /* well-formed, but not offered; the log says what is */
-    L1L2STAB_ERR_NOMEM = -4,       /* the system's: out of memory */
-    L1L2STAB_ERR_BACKEND = -5      /* the library's: the imaging or solver library failed with no fallback */
+    L1L2STAB_ERR_ARGUMENT = -1,    /* the caller's fault: a value out of range, a NULL; the log says which */
+    L1L2STAB_ERR_STATE = -2,       /* the caller's fault: a call out of order, such as push after finish */
+    L1L2STAB_ERR_UNSUPPORTED = -3, /* valid, but not supported; the log says what is supported */
+    L1L2STAB_ERR_NOMEM = -4,       /* the system is out of memory */
+    L1L2STAB_ERR_BACKEND = -5      /* the library's fault: OpenCV or the solver failed, and there is no fallback */
 } L1L2StabResult;
 
 /* Names, order of planes and layout are GStreamer's. For odd frame sizes the sizes of chroma planes are rounded up, and
  * packed 4:2:2 rows are rounded up to pairs of pixels. Alpha, and the byte that X stands for, is warped like a color.
  * 10, 12 and 16 are the bits of a component. Such a component takes two bytes, the low one first; addresses of planes
- * and strides must be even. These formats are not offered on big-endian processors. */
+ * and strides must be even. These formats are not supported on big-endian processors. */
 typedef enum L1L2StabFormat {
     L1L2STAB_FORMAT_UNKNOWN = 0,
     L1L2STAB_FORMAT_GRAY8 = 1,
@@ -193,14 +193,14 @@ typedef enum L1L2StabSolver {
 } L1L2StabSolver;
 
 typedef enum L1L2StabLogLevel {
-    L1L2STAB_LOG_ERROR = 1, /* a call returns an L1L2STAB_ERR_*, now or by l1l2stab_take_error() */
+    L1L2STAB_LOG_ERROR = 1, /* an error that this call returns, or that l1l2stab_take_error() will return */
     L1L2STAB_LOG_WARN = 2,  /* output quality suffers */
     L1L2STAB_LOG_INFO = 3,  /* once per instance */
     L1L2STAB_LOG_DEBUG = 4, /* once per event */
     L1L2STAB_LOG_TRACE = 5  /* once per frame */
 } L1L2StabLogLevel;
 
-/* This struct does not grow: it lies within the config. More about logging goes to the config's end. */
+/* This struct does not grow, because it lies within the config. New settings of the log go to the config's end. */
 typedef struct L1L2StabLogger {
     /* Called with a finished message without newline, on the thread of the call that logs. Must not call the library
      * with the same instance. NULL: silent. */
@@ -209,8 +209,8 @@ typedef struct L1L2StabLogger {
     L1L2StabLogLevel max_level; /* more verbose messages are not even formatted; default L1L2STAB_LOG_INFO */
 } L1L2StabLogger;
 
-/* Initialize it with l1l2stab_config_init(), then set format, width, height and what shall differ from the defaults.
- * To add a field, append it here and extend l1l2stab_config_init() and the checks in config.c. */
+/* Initialize it with l1l2stab_config_init(), then set format, width, height, and each field that is to differ from its
+ * default. To add a field, append it here and extend l1l2stab_config_init() and the checks in config.c. */
 typedef struct L1L2StabConfig {
     size_t struct_size;            /* bytes; set by l1l2stab_config_init() */
     L1L2StabFormat format;         /* required */
@@ -242,7 +242,7 @@ typedef struct L1L2StabConfig {
  * needed. Fields are only ever added at the end. */
 typedef struct L1L2StabFrame {
     /* sizeof(L1L2StabFrame), or 0 for the layout of version 0.2 (up to and including `motion`), so that a frame cleared
-     * to zero is valid. A size beyond what the library knows is accepted if the bytes that it does not know are 0. */
+     * to zero is valid. If it is larger than the library's own struct, the additional bytes must be 0. */
     size_t struct_size;
     uint8_t *data[4];    /* first row of each plane; push() only reads, pull() only writes; unused ones are ignored */
     ptrdiff_t stride[4]; /* bytes from a row to the next, may be negative */
@@ -264,7 +264,7 @@ typedef struct L1L2StabFrame {
 typedef enum L1L2StabMotionSource {
     L1L2STAB_MOTION_SOURCE_NONE = 0,        /* a path's first frame: there is no motion */
     L1L2STAB_MOTION_SOURCE_IDENTITY = 1,    /* nothing could be measured: the camera is taken as still */
-    L1L2STAB_MOTION_SOURCE_PREDICTED = 2,   /* nothing could be measured: the last motion goes on and fades */
+    L1L2STAB_MOTION_SOURCE_PREDICTED = 2,   /* nothing could be measured: the last motion is continued and decays */
     L1L2STAB_MOTION_SOURCE_GIVEN = 3,       /* from the caller: L1L2StabFrame.motion */
     L1L2STAB_MOTION_SOURCE_TRANSLATION = 4, /* measured; too few points for more parameters */
     L1L2STAB_MOTION_SOURCE_SIMILARITY = 5,  /* measured */
@@ -293,7 +293,7 @@ typedef struct L1L2StabInfo {
     uint64_t index;      /* the frame's number since create or reset, from 0 */
     uint64_t path_index; /* the frame's number in its path, from 0 */
     double F[9];         /* motion, frame t to frame t-1, that the path is made of; identity at a path's first frame.
-                          * Whoever gives it back as L1L2StabFrame.motion gets the same path, bit for bit. */
+                          * Given as L1L2StabFrame.motion in another run, it makes the same path, bit for bit. */
     double B[9];         /* update transform: crop window to frame t */
     double S[9];         /* smooth step P_{t-1}^-1 P_t: the motion that is left; identity at a path's first frame */
     double C[9];         /* camera path, for display: accumulated from F, relative to the path's first frame. Always
@@ -314,13 +314,13 @@ typedef struct L1L2StabInfo {
     double solver_residual[2]; /* OSQP's primal and dual residual; 0 where it did not run */
     double quality;          /* of F, [0, 1]: 0 not measured, 1 where points all over the frame agree */
     double bypass;           /* of what was rendered, [0, 1]: 0 stabilized, 1 untouched */
-    double residual;         /* rolling-shutter correction: the longest way that a sample was moved by it, pixels */
+    double residual;         /* rolling-shutter correction: the longest distance by which it moved a sample, pixels */
     double readout;          /* time from the first row to the last, frames, as estimated; < 0: bottom row first;
                               * 0: not known */
     uint8_t reserved[256];   /* 0; later versions put further fields here and keep the struct's size */
 } L1L2StabInfo;
 
-/* Fills *cfg with the defaults. Pass sizeof *cfg, so that a program built against an older header goes on working. */
+/* Fills *cfg with the defaults. Pass sizeof *cfg, so that a program built against an older header still works. */
 L1L2STAB_API void l1l2stab_config_init(L1L2StabConfig *cfg, size_t struct_size);
 
 /* The delay that this config implies, in frames: its window. An error < 0 if the config is not valid. */
@@ -339,10 +339,10 @@ L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_create(L1L2Stab **out, 
  * Anything but OK: the frame remains the caller's, and the stream is as if it had not been pushed. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in);
 
-/* The first error that measuring met since this was asked last: ERR_NOMEM or ERR_BACKEND, or OK if there was none. It
- * is that of a frame that push() had accepted. That frame is not lost: it starts a path, and its info has
+/* Returns the first error of measuring a frame since the last call of this function: ERR_NOMEM or ERR_BACKEND, or OK if
+ * there was none. push() had accepted that frame, and it is not lost: a path starts there, and its info has
  * L1L2STAB_INFO_MOTION_FAILED. Does not wait: the error of the newest frame is known after the next push() or
- * finish(). reset() forgets it. */
+ * finish(). reset() forgets the error. */
 L1L2STAB_API L1L2StabResult l1l2stab_take_error(L1L2Stab *s);
 
 /* Set lambda and crop_ratio of the frames that are pushed from now on, also after a reset(); ranges as in the config.
@@ -351,13 +351,15 @@ L1L2STAB_API L1L2StabResult l1l2stab_take_error(L1L2Stab *s);
 L1L2STAB_API L1L2StabResult l1l2stab_set_lambda(L1L2Stab *s, double lambda);
 L1L2STAB_API L1L2StabResult l1l2stab_set_crop_ratio(L1L2Stab *s, double crop_ratio);
 
-/* bypass != 0: the frames that are pulled from now on come out untouched, in spite of the delay; 0: stabilized again.
- * The picture changes over L1L2STAB_BYPASS_FRAMES frames, or at once where a path starts, and stays inside the source
- * on the way. The path goes on unseen. Untouched is the whole frame; with output_size CROP its middle. */
+/* bypass != 0: the frames that are pulled from now on are not stabilized; 0: they are again. Frames that are held
+ * already are included, so the change has no delay. The picture changes over L1L2STAB_BYPASS_FRAMES frames, or at once
+ * where a path starts, and stays inside the source meanwhile. The path is computed during the bypass too. A bypassed
+ * picture is the whole frame, or with output_size CROP its middle. */
 #define L1L2STAB_BYPASS_FRAMES 30
 L1L2STAB_API L1L2StabResult l1l2stab_set_bypass(L1L2Stab *s, int bypass);
 
-/* Which frame would pull() return next? OK sets *pts and *opaque (each may be NULL); otherwise as pull(). */
+/* Reports the frame that pull() would return next. OK: *pts and *opaque are set (each pointer may be NULL). Otherwise
+ * nothing is set, and the result is that of pull(). */
 L1L2STAB_API L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque);
 
 /* Renders the oldest frame that is ready into the caller's planes, and releases it.
@@ -371,15 +373,15 @@ L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2S
  * again does nothing. */
 L1L2STAB_API L1L2StabResult l1l2stab_finish(L1L2Stab *s);
 
-/* For a source that is late: the `frames` oldest held frames (all, if fewer are held) can be pulled from now on. They
- * are decided by the frames that have come: with a shorter look-ahead, smoothly joined to the frames before, and inside
- * the source as always. The frames pushed afterwards wait for their whole window again. Costs a solve where it decides
- * a frame; it can be called as often as frames are due. 0 does nothing. ERR_ARGUMENT: frames < 0. */
+/* For a source that is late: the `frames` oldest held frames (all, if fewer are held) can be pulled from now on. Their
+ * path is computed from the frames that have been pushed so far, with a shorter look-ahead. It continues the path of
+ * the frames before smoothly, and stays inside the source. Frames that are pushed later wait for their whole window
+ * again. A call that has to compute a path takes the time of a solve. 0 does nothing. ERR_ARGUMENT: frames < 0. */
 L1L2STAB_API L1L2StabResult l1l2stab_hurry(L1L2Stab *s, int frames);
 
 /* Drops everything held (releasing it) and forgets frames, path and pending error. What the caller set stays: the
  * config, and lambda, crop ratio and bypass as they were set last. They are in full effect from the first frame on,
- * without the gradual change. So the output is that of a new instance on which the same setters were called before the
+ * without a gradual change. So the output is that of a new instance on which the same setters were called before the
  * first push. */
 L1L2STAB_API void l1l2stab_reset(L1L2Stab *s);
 

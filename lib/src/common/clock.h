@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Time spent, for the figures by stage; nothing that is computed depends on it. A leaf. */
+/* A clock that measures the time of each stage. No result depends on it. */
 #ifndef L1L2_COMMON_CLOCK_H
 #define L1L2_COMMON_CLOCK_H
 

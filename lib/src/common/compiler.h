@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the C standard does not say and compilers offer: all of it is optional, and absent where a compiler lacks it. */
+/* Compiler extensions for speed. Without them the code does the same. */
 #ifndef L1L2_COMMON_COMPILER_H
 #define L1L2_COMMON_COMPILER_H
 
@@ -15,7 +15,7 @@
 #define L1L2_INLINE static inline
 #endif
 
-/* Asks for the cache line at an address, which may be any number: nothing is read through it. `write` is 0 or 1. */
+/* Prefetches the cache line at an address. The address need not be valid: nothing is read. `write` is 0 or 1. */
 #if defined(__GNUC__)
 #define L1L2_PREFETCH(address, write) __builtin_prefetch((const void *)(address), (write))
 #else

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A column of a table that has one record a frame: the same field of every record. A leaf.
+ * A column of a table that has one record a frame: the same field of every record.
  *
- * All that is known of a frame lives in one record, in one queue (frame_queue.h of the stabilizer). Camera path and
- * rolling-shutter filter work on these records and own no copies, but each of them knows its own field alone: it gets
- * the column of that field. So the layers stay apart, since nobody but the stabilizer has to know the whole record, and
- * a test of one module passes a plain array.
+ * All that is known of a frame is in one record, in the stabilizer's queue (frame_queue.h). The camera path and the
+ * rolling-shutter filter work on these records without copies. Each of them knows only its own field, by its column. So
+ * the whole record is known to the stabilizer alone, and a test of one module can pass a plain array.
  */
 #ifndef L1L2_COMMON_FRAME_COLUMN_H
 #define L1L2_COMMON_FRAME_COLUMN_H

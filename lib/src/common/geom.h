@@ -5,7 +5,7 @@
  *   Origin     the frame's center; x right, y down.
  *   Unit       inside the library: the frame's diagonal, so that lambda means the same at every resolution.
  *              At the public header: pixels. l1l2_mat_rescale() converts.
- *   Pixels     centres at half-integers: the frame is exactly [-W/2, W/2] x [-H/2, H/2] px.
+ *   Pixels     centers at half-integers: the frame is exactly [-W/2, W/2] x [-H/2, H/2] px.
  *   Direction  F_t maps points of frame t to frame t-1; C_t = F_1 ... F_t (eq. 1); P_t = C_t B_t (eq. 2);
  *              B_t maps the crop window to the source frame.
  *   Parameters q = (x, y, a, b, e, f / 2 each):  [a + e  f - b  x]     a zoom, b turn, e stretch, f skew
@@ -46,7 +46,7 @@ int l1l2_mat_dim(L1L2StabMotionModel model);
 L1L2Mat l1l2_mat_from_q(const double q[L1L2_DIM], int dim);
 void l1l2_mat_to_q(const L1L2Mat *m, double q[L1L2_DIM]);
 
-/* What a motion model of `dim` parameters can say of m: the rest is left out. An affine m of the model is unchanged. */
+/* m with only the first `dim` parameters; the others become the identity's. A map of that model is unchanged. */
 L1L2Mat l1l2_mat_reduce(const L1L2Mat *m, int dim);
 
 /* The map that applies b first: (a b) u = a (b u). */
@@ -59,7 +59,7 @@ L1L2Point l1l2_mat_apply(const L1L2Mat *m, L1L2Point p);
 bool l1l2_mat_is_finite(const L1L2Mat *m);
 bool l1l2_mat_is_identity(const L1L2Mat *m);
 
-/* The same map in a unit in which lengths read `factor` times as large: diagonals to pixels is factor = diagonal_px. */
+/* The same map in a unit in which lengths are `factor` times as large: diagonal_px converts diagonals to pixels. */
 L1L2Mat l1l2_mat_rescale(L1L2Mat m, double factor);
 
 /* (1 - weight) a + weight b, element by element; exact at 0 and 1. Where a and b take a point into a convex set, so

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Level-guarded messages to the caller's logger. A leaf: anything may use it. */
+/* Level-guarded messages to the caller's logger. */
 #ifndef L1L2_COMMON_LOG_H
 #define L1L2_COMMON_LOG_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Checked, zeroed allocation. A leaf. All of the library's own heap memory comes from here, so that a test can make
+/* Checked, zeroed allocation. All of the library's own heap memory comes from here, so that a test can make
  * the k-th allocation fail. */
 #ifndef L1L2_COMMON_MEM_H
 #define L1L2_COMMON_MEM_H

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Public structs that carry their size: a program may have been built against an older or a newer header. A leaf. */
+/* Public structs that carry their size: a program may have been built against an older or a newer header. */
 #ifndef L1L2_COMMON_STRUCT_SIZE_H
 #define L1L2_COMMON_STRUCT_SIZE_H
 
@@ -11,8 +11,8 @@ enum { L1L2_STRUCT_SIZE_MAX = 4096 }; /* bytes; no public struct comes near it: 
 
 /* Copies a caller's struct of `size` bytes over *out, which holds `known` bytes of defaults. `least`: bytes of the
  * shortest layout that is accepted.
- * ERR_ARGUMENT: the size is none of any version. ERR_UNSUPPORTED: bytes are set that this version does not know: a wish
- * of the caller would be ignored in silence. On error *out is unchanged. */
+ * ERR_ARGUMENT: no version has this size. ERR_UNSUPPORTED: bytes are set that this version does not know, and ignoring
+ * them would ignore a setting of the caller. On error *out is unchanged. */
 static inline L1L2StabResult l1l2_struct_read(void *out, size_t known, const void *in, size_t size, size_t least)
 {
     if (size < least || size > L1L2_STRUCT_SIZE_MAX)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Scales the first plane of a frame down to a small grey picture by area averaging: each output pixel is the mean of
- * the part of the source that it covers. Color components are mixed to grey with the weights of the format.
+ * Scales the first plane of a frame down to a small gray picture by area averaging: each output pixel is the mean of
+ * the part of the source that it covers. Color components are mixed to gray with the weights of the format.
  *
  * Fixed point. A column's weighted sum is exact while it fits 15 bits: for bytes, while the highest level times the
  * parts that an output covers does, 255 * 128. That holds for factors that are ratios of small numbers, such as 2, 3,
@@ -29,11 +29,11 @@ L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, in
                                      int out_height);
 void l1l2_image_scale_free(L1L2AreaScaler *s);
 
-/* From now on the picture is stretched: [low, high) of the source's levels becomes [0, 256) of the grey picture, and
+/* From now on the picture is stretched: [low, high) of the source's levels becomes [0, 256) of the gray picture, and
  * what is beyond is cut off. At first it is the full range. */
 void l1l2_image_scale_set_levels(L1L2AreaScaler *s, L1L2Levels levels);
 
-/* Writes the grey picture, 8 bits a pixel, to out. Strides are in bytes, of any sign and parity; data may have any
+/* Writes the gray picture, 8 bits a pixel, to out. Strides are in bytes, of any sign and parity; data may have any
  * alignment, also where a component has two bytes. A scaler is used by one thread at a time. */
 void l1l2_image_scale_run(L1L2AreaScaler *s, const uint8_t *data, ptrdiff_t stride, uint8_t *out, ptrdiff_t out_stride);
 

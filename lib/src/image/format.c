@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-/* The grey picture: luma, the green plane of planar RGB, or BT.601's mix of the colors. */
+/* The gray picture: luma, the green plane of planar RGB, or BT.601's mix of the colors. */
 #define FIRST {1.0}
 #define SECOND {0.0, 1.0}
 #define THIRD {0.0, 0.0, 1.0}

@@ -11,7 +11,7 @@ enum { ITERATIONS = 10 };
 static const float last_step = 0.03f;
 /* A step that undoes the one before to this many px: the point swings between two places, and half way is taken. */
 static const float same_step = 0.01f;
-/* A window whose smaller eigenvalue is below this has too little texture; about a third of a grey level a pixel. */
+/* A window whose smaller eigenvalue is below this has too little texture; about a third of a gray level a pixel. */
 static const float min_eigenvalue = 1e-4f;
 /* Scales the integer sums. Every step is a ratio in which it cancels: slopes, 32 per grey level and pixel, and grey
  * levels, with 5 fractional bits, have the same unit. It only sets the unit of min_eigenvalue. */

@@ -27,7 +27,7 @@ enum { L1L2_LK_WINDOW = 11, L1L2_LK_BORDER_X = 16, L1L2_LK_BORDER_Y = L1L2_LK_WI
 /* One level of a picture's pyramid. Each level has half the size of the one before. */
 typedef struct L1L2LkLevel {
     const uint8_t *grey;            /* address of pixel (0, 0) */
-    const int16_t *slope;           /* for each pixel two slopes by Scharr's filter, across and down; 32 per grey level
+    const int16_t *slope;           /* for each pixel two slopes by Scharr's filter, across and down; 32 per gray level
                                      * and pixel */
     ptrdiff_t stride, slope_stride; /* of grey in bytes; of slope in int16_t */
     int width, height;              /* pixels, without the borders */
@@ -45,7 +45,7 @@ typedef struct L1L2LkPlace {
 
 enum { L1L2_LK_LANES = 16 }; /* words in a row of a patch: the window's, then zeros */
 
-/* A sampled window: grey levels with 5 fractional bits, and slopes. */
+/* A sampled window: gray levels with 5 fractional bits, and slopes. */
 typedef struct L1L2LkPatch {
     int16_t grey[L1L2_LK_WINDOW][L1L2_LK_LANES];
     int16_t across[L1L2_LK_WINDOW][L1L2_LK_LANES], down[L1L2_LK_WINDOW][L1L2_LK_LANES];

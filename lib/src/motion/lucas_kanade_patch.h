@@ -2,7 +2,7 @@
 /*
  * The inner loops of Lucas-Kanade: a window of pixels, sampled between pixels by bilinear weights.
  *
- * Fixed point. The four weights have 14 fractional bits and sum to exactly 1. Sampled grey levels keep 5 fractional
+ * Fixed point. The four weights have 14 fractional bits and sum to exactly 1. Sampled gray levels keep 5 fractional
  * bits, so they are at most 255 * 32 = 8160, and so is the size of a difference of two. Slopes are rounded to integers;
  * Scharr's filter has weights 3, 10, 3, so they are at most 16 * 255 = 4080 in size.
  *

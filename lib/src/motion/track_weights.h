@@ -2,10 +2,11 @@
 /*
  * Weights of the tracks when the camera's motion is decided: the background counts more than subjects.
  *
- * Coverage   the frame is divided into 8x6 cells, and the tracks of a cell share one weight. A textured subject has no
- * more weight than the cells that it covers, however many corners it has. Place      cells near the left, right and
- * upper rim count more, because subjects are in the middle or at the bottom. History    tracks that have followed the
- * camera before count more, and so do cells in which tracks did.
+ *   Coverage   The frame is divided into 8x6 cells, and the tracks of a cell share one weight. A textured subject has
+ *              no more weight than the cells that it covers, however many corners it has.
+ *   Place      Cells near the left, right and upper side of the frame count more, because subjects are in the middle or
+ *              at the bottom.
+ *   History    Tracks that have followed the camera before count more, and so do cells in which tracks did.
  */
 #ifndef L1L2_MOTION_TRACK_WEIGHTS_H
 #define L1L2_MOTION_TRACK_WEIGHTS_H

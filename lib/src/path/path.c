@@ -107,8 +107,8 @@ static void describe_window(L1L2Path *path, const L1L2PathWindow *step)
     }
 }
 
-/* A path for when no solver converges: it goes on at the last speed, which fades. The constraints of each frame, met
- * one after the other, bend it. Feasible and continuous with what was given out, but not smooth. */
+/* The path if no solver converges: it continues at the last speed, which decays, and is corrected to satisfy each
+ * frame's constraints. It is feasible, and continuous with the frames that were emitted, but not smooth. */
 static void hold_course(L1L2Path *path, const L1L2PathWindow *step)
 {
     const double fade = 0.95;
@@ -131,7 +131,8 @@ static void hold_course(L1L2Path *path, const L1L2PathWindow *step)
     }
 }
 
-/* eq. (2), B_t = C_t^-1 P_t for the frames of the window; what the solver's tolerance leaves outside is pulled in. */
+/* eq. (2), B_t = C_t^-1 P_t for the frames of the window. A B_t that the solver's tolerance left outside is moved
+ * inside. */
 static void update_transforms(L1L2Path *path, const L1L2PathWindow *step)
 {
     const L1L2PathProblem *p = path->problem;
@@ -147,7 +148,8 @@ static void update_transforms(L1L2Path *path, const L1L2PathWindow *step)
     }
 }
 
-/* eq. (8), weights put right (see path.h). P = C B is linear in B for one camera path, so averaging B averages P. */
+/* eq. (8) with the corrected weights of path.h. P = C B is linear in B for one camera path, so averaging B averages
+ * P. */
 static L1L2Mat blend(const L1L2Mat *old_B, const L1L2Mat *new_B, int i, int overlap)
 {
     const double new_weight = (double)i / (overlap + 1);
@@ -181,7 +183,8 @@ static void decide(L1L2Path *path, const L1L2PathWindow *step, const L1L2PathSol
     path->decided = path->start + step->first + step->emit;
 }
 
-/* A point that is not the optimum is taken where it is near enough that nobody could tell; else the course is held. */
+/* If no solver converged, the predictor's point is still used where its bound shows that it is close to the optimum.
+ * Otherwise hold_course() makes the path. */
 static void solve_window(L1L2Path *path, const L1L2PathWindow *step)
 {
     const double near_enough = 1e-4;

@@ -8,7 +8,7 @@
  * video is.
  *
  * Joins (paper, section 4.1)
- *   continuous  the differences of a window reach back over the last three frames given out before it, as constants.
+ *   continuous  the differences of a window reach back over the last three frames emitted before it, as constants.
  *   blend       eq. (8) on the K shared frames. As printed, v_i = i/K weighs the OLD window: it would jump at both
  *               ends. The weights run the other way here: old 1 - i/(K+1), new i/(K+1), i = 1..K.
  * Around an early window (window_schedule.h) every join is a continuous one.

@@ -13,13 +13,11 @@
  * relative to the frame: -1/2 is the first row of pixels, 1/2 the last.
  *
  * Two models:
- *   homography  8 parameters: a homography near the identity, to first order (G2011, section 5: Grundmann, Kwatra,
- *   Essa,
- *               "Auto-directed video stabilization with robust L1 optimal camera paths", CVPR 2011).
- *   mixture     a mixture of homographies over bands of rows (Grundmann, Kwatra, Castro, Essa, "Calibration-free
- *   rolling
- *               shutter removal", ICCP 2012): each band has its own translation, with Gaussian weights between bands;
- *               roll and zoom are linear in the row; one perspective term holds for the whole frame.
+ *   homography  8 parameters: a homography near the identity, to first order. Source: G2011, section 5 (Grundmann,
+ *               Kwatra, Essa, "Auto-directed video stabilization with robust L1 optimal camera paths", CVPR 2011).
+ *   mixture     A mixture of homographies over bands of rows. Each band has its own translation, with Gaussian weights
+ *               between bands. Roll and zoom are linear in the row. One perspective term holds for the whole frame.
+ *               Source: Grundmann, Kwatra, Castro, Essa, "Calibration-free rolling shutter removal", ICCP 2012.
  */
 #ifndef L1L2_ROLLING_SHUTTER_MODEL_H
 #define L1L2_ROLLING_SHUTTER_MODEL_H

@@ -24,7 +24,7 @@ static inline Row load_row(const uint8_t *p)
     return (Row){{_mm_unpacklo_epi8(low, zero), _mm_unpackhi_epi8(low, zero), _mm_unpacklo_epi8(high, zero)}};
 }
 
-/* Twelve sampled grey levels; greys[1] has the last 4 of them and 4 zeros. upper, lower: weights of the two rows. */
+/* Twelve sampled gray levels; greys[1] has the last 4 of them and 4 zeros. upper, lower: weights of the two rows. */
 static inline void sample_grey(const Row *above, const Row *below, __m128i upper, __m128i lower, __m128i greys[2])
 {
     const __m128i round = _mm_set1_epi32(L1L2_LK_GREY_ROUND);

@@ -172,7 +172,7 @@ static gboolean open_stabilizer(Video *video, GstCaps *caps)
     cfg.height = video->info.height;
     cfg.window = WINDOW;
     if (video->motion)
-        fprintf(video->motion, "# t, F_t: frame t to frame t-1, row-major, pixels, origin at the centre of %dx%d\n",
+        fprintf(video->motion, "# t, F_t: frame t to frame t-1, row-major, pixels, origin at the center of %dx%d\n",
                 cfg.width, cfg.height);
     const L1L2StabResult r = l1l2stab_create(&video->stab, &cfg);
     return r == L1L2STAB_OK || fail(video->path, "%s", l1l2stab_strerror(r));

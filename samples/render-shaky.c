@@ -9,7 +9,7 @@
  *     audiotestsrc ! avenc_aac ! mp4mux
  *
  * TRUTH.txt has a line for each frame t: t and F_t (frame t to frame t-1), nine numbers, row-major, in pixels with the
- * origin at the frame's centre.
+ * origin at the frame's center.
  */
 #include <gst/app/gstappsrc.h>
 #include <gst/gst.h>
@@ -150,7 +150,7 @@ static gboolean write_truth(const Synth *synth, const char *path)
         perror(path);
         return FALSE;
     }
-    fprintf(file, "# t, F_t: frame t to frame t-1, row-major, pixels, origin at the centre of %dx%d\n", WIDTH, HEIGHT);
+    fprintf(file, "# t, F_t: frame t to frame t-1, row-major, pixels, origin at the center of %dx%d\n", WIDTH, HEIGHT);
     for (int t = 0; t < FRAMES; t++) {
         double F[9];
         synth_motion(synth, t, F);

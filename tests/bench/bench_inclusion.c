@@ -37,7 +37,7 @@ static void *must(void *memory)
     return memory;
 }
 
-static void analyse(Clip *clip, FILE *in)
+static void analyze(Clip *clip, FILE *in)
 {
     const L1L2StabLogger log = {0};
     const size_t size = (size_t)clip->width * (size_t)clip->height;
@@ -126,7 +126,7 @@ int main(int argc, char **argv)
         return EXIT_SUCCESS;
     }
     Clip clip = {.width = atoi(argv[1]), .height = atoi(argv[2]), .frame_rate = argc > 3 ? atof(argv[3]) : 30.0};
-    analyse(&clip, stdin);
+    analyze(&clip, stdin);
     for (int model = 0; model < MODELS; model++) {
         Count count = {0};
         for (int r = 0; r < RATIOS; r++)

@@ -14,16 +14,16 @@
 typedef struct
 {
   gdouble lambda[N_FRAMES], crop_ratio[N_FRAMES];
-} Knobs;
+} Settings;
 
 static void
-init_knobs (Knobs * knobs, gdouble lambda_then, gdouble crop_ratio_then)
+init_settings (Settings * settings, gdouble lambda_then, gdouble crop_ratio_then)
 {
   guint i;
 
   for (i = 0; i < N_FRAMES; i++) {
-    knobs->lambda[i] = i < CHANGED ? 0.5 : lambda_then;
-    knobs->crop_ratio[i] = i < CHANGED ? 0.9 : crop_ratio_then;
+    settings->lambda[i] = i < CHANGED ? 0.5 : lambda_then;
+    settings->crop_ratio[i] = i < CHANGED ? 0.9 : crop_ratio_then;
   }
 }
 
@@ -41,7 +41,7 @@ pull_from_library (L1L2Stab * stab, gint width, gint height, GPtrArray * out)
 
 /* The frames that the library renders, as GBytes. */
 static GPtrArray *
-run_library (const Knobs * knobs, L1L2StabOutputSize size)
+run_library (const Settings * settings, L1L2StabOutputSize size)
 {
   GPtrArray *out = g_ptr_array_new_with_free_func ((GDestroyNotify)
       g_bytes_unref);
@@ -61,11 +61,11 @@ run_library (const Knobs * knobs, L1L2StabOutputSize size)
     frame.data[0] = inputs + i * NOISE_WIDTH * NOISE_HEIGHT;
     frame.stride[0] = NOISE_WIDTH;
     stab_noise_fill (frame.data[0], i);
-    if (knobs->lambda[i] != (i ? knobs->lambda[i - 1] : config.lambda))
-      l1l2stab_set_lambda (stab, knobs->lambda[i]);
-    if (knobs->crop_ratio[i] != (i ? knobs->crop_ratio[i - 1]
+    if (settings->lambda[i] != (i ? settings->lambda[i - 1] : config.lambda))
+      l1l2stab_set_lambda (stab, settings->lambda[i]);
+    if (settings->crop_ratio[i] != (i ? settings->crop_ratio[i - 1]
             : config.crop_ratio))
-      l1l2stab_set_crop_ratio (stab, knobs->crop_ratio[i]);
+      l1l2stab_set_crop_ratio (stab, settings->crop_ratio[i]);
     fail_unless_equals_int (l1l2stab_push (stab, &frame), L1L2STAB_OK);
     if (i >= WINDOW - 1)
       pull_from_library (stab, width, height, out);
@@ -91,7 +91,7 @@ noise_harness_new (L1L2StabOutputSize size)
 /* The frames that the element renders, as GBytes. Their timestamps start at `base`. Before each frame its values are
  * set, if there are any. */
 static GPtrArray *
-run_element (GstHarness * h, const Knobs * knobs, GstClockTime base)
+run_element (GstHarness * h, const Settings * settings, GstClockTime base)
 {
   GPtrArray *out = g_ptr_array_new_with_free_func ((GDestroyNotify)
       g_bytes_unref);
@@ -101,9 +101,9 @@ run_element (GstHarness * h, const Knobs * knobs, GstClockTime base)
   for (i = 0; i < N_FRAMES; i++) {
     buffer = stab_noise_new (i);
     GST_BUFFER_PTS (buffer) += base;
-    if (knobs)
-      g_object_set (h->element, "lambda", knobs->lambda[i], "crop-ratio",
-          knobs->crop_ratio[i], NULL);
+    if (settings)
+      g_object_set (h->element, "lambda", settings->lambda[i], "crop-ratio",
+          settings->crop_ratio[i], NULL);
     fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
   }
   gst_harness_push_event (h, gst_event_new_eos ());
@@ -148,13 +148,13 @@ GST_START_TEST (a_change_while_playing_applies_to_frames_that_come_in_later)
   GstHarness *plain_h = noise_harness_new (size);
   GstHarness *changed_h = noise_harness_new (size);
   GPtrArray *plain, *changed, *expected;
-  Knobs knobs;
+  Settings settings;
   guint changed_at;
 
-  init_knobs (&knobs, changes[__i__].lambda, changes[__i__].crop_ratio);
+  init_settings (&settings, changes[__i__].lambda, changes[__i__].crop_ratio);
   plain = run_element (plain_h, NULL, 0);
-  changed = run_element (changed_h, &knobs, 0);
-  expected = run_library (&knobs, size);
+  changed = run_element (changed_h, &settings, 0);
+  expected = run_library (&settings, size);
 
   /* Held frames that share a window with a later frame can differ too. */
   changed_at = first_difference (changed, plain);
@@ -211,18 +211,18 @@ GST_START_TEST (a_controller_drives_crop_ratio_by_stream_time)
   const L1L2StabOutputSize size = __i__;
   GstControlSource *source = slope_new ();
   GPtrArray *one, *two, *expected;
-  Knobs knobs;
+  Settings settings;
   guint i;
 
-  init_knobs (&knobs, 0.5, 0.9);
+  init_settings (&settings, 0.5, 0.9);
   for (i = 0; i < N_FRAMES; i++)
     fail_unless (gst_control_source_get_value (source, i * FRAME_DURATION,
-            &knobs.crop_ratio[i]));
-  fail_unless (knobs.crop_ratio[0] > knobs.crop_ratio[N_FRAMES - 1] + 0.3);
+            &settings.crop_ratio[i]));
+  fail_unless (settings.crop_ratio[0] > settings.crop_ratio[N_FRAMES - 1] + 0.3);
 
   one = run_controlled (source, size);
   two = run_controlled (source, size);
-  expected = run_library (&knobs, size);
+  expected = run_library (&settings, size);
   fail_unless_equals_int (first_difference (one, two), N_FRAMES);
   fail_unless_equals_int (first_difference (one, expected), N_FRAMES);
 

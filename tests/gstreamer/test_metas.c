@@ -101,7 +101,7 @@ static const struct
 } customs[] = {
   {"TestOfNothing", {NULL}, TRUE},
   {"TestOfVideo", {GST_META_TAG_VIDEO_STR, NULL}, TRUE},
-  {"TestOfColours",
+  {"TestOfColors",
       {GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_COLORSPACE_STR, NULL}, TRUE},
   {"TestOfSize",
       {GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR, NULL}, FALSE},

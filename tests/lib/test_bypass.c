@@ -171,7 +171,7 @@ START_TEST(an_untouched_frame_is_the_source_byte_for_byte_in_every_format)
 }
 END_TEST
 
-START_TEST(motions_that_are_given_back_make_the_same_path_to_the_bit)
+START_TEST(reported_motions_that_are_given_again_make_the_same_path_to_the_bit)
 {
     L1L2StabConfig cfg = small_config(WINDOW);
     static L1L2StabInfo measured[FRAMES], given[FRAMES];
@@ -212,7 +212,7 @@ int main(void)
     tcase_add_test(tc, an_untouched_frame_is_the_source_byte_for_byte_in_every_format);
     tcase_add_loop_test(tc, no_sample_leaves_the_source_on_the_way, L1L2STAB_OUTPUT_SIZE_INPUT,
                         L1L2STAB_OUTPUT_SIZE_CROP + 1);
-    tcase_add_test(tc, motions_that_are_given_back_make_the_same_path_to_the_bit);
+    tcase_add_test(tc, reported_motions_that_are_given_again_make_the_same_path_to_the_bit);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);
 }

@@ -113,7 +113,7 @@ static void listen_to(void *cookie, L1L2StabLogLevel level, const char *message)
     listener->elsewhere += !pthread_equal(pthread_self(), listener->caller);
 }
 
-/* Grey frames: the tracking, which has a thread of its own, says that it is lost. */
+/* Gray frames: the tracking, which has a thread of its own, says that it is lost. */
 START_TEST(messages_come_on_the_callers_thread)
 {
     Listener listener = {.caller = pthread_self()};
@@ -158,7 +158,7 @@ START_TEST(a_frame_is_released_only_when_nobody_reads_it_any_more)
 }
 END_TEST
 
-START_TEST(every_format_is_stabilised_alike)
+START_TEST(every_format_is_stabilized_alike)
 {
     L1L2StabInfo reference[12], info[12];
     for (int format = L1L2STAB_FORMAT_GRAY8; format <= L1L2STAB_FORMAT_RGB; format++) {
@@ -193,7 +193,7 @@ int main(void)
     tcase_add_test(tcase, the_number_of_threads_changes_no_bit);
     tcase_add_test(tcase, messages_come_on_the_callers_thread);
     tcase_add_test(tcase, a_frame_is_released_only_when_nobody_reads_it_any_more);
-    tcase_add_test(tcase, every_format_is_stabilised_alike);
+    tcase_add_test(tcase, every_format_is_stabilized_alike);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

@@ -230,7 +230,7 @@ START_TEST(given_motions_take_the_place_of_measured_ones)
 }
 END_TEST
 
-START_TEST(every_motion_model_runs_and_keeps_its_word)
+START_TEST(every_motion_model_runs_and_its_maps_are_of_the_model)
 {
     Clip *clip = new_clip(40, L1L2STAB_FORMAT_I420);
     for (int model = L1L2STAB_MOTION_MODEL_TRANSLATION; model <= L1L2STAB_MOTION_MODEL_AFFINE; model++) {
@@ -284,7 +284,7 @@ START_TEST(a_given_motion_has_to_be_an_invertible_map_of_the_model)
 }
 END_TEST
 
-START_TEST(knobs_set_while_running_are_checked_and_used)
+START_TEST(settings_changed_while_running_are_checked_and_used)
 {
     const L1L2StabConfig cfg = small_config(8);
     L1L2StabInfo info;
@@ -347,9 +347,9 @@ int main(void)
     tcase_add_test(tcase, a_discontinuity_starts_a_path_without_a_change_of_delay);
     tcase_add_test(tcase, given_motions_take_the_place_of_measured_ones);
     tcase_add_test(tcase, the_threads_are_those_asked_for_and_the_inner_loops_have_a_name);
-    tcase_add_test(tcase, every_motion_model_runs_and_keeps_its_word);
+    tcase_add_test(tcase, every_motion_model_runs_and_its_maps_are_of_the_model);
     tcase_add_test(tcase, a_given_motion_has_to_be_an_invertible_map_of_the_model);
-    tcase_add_test(tcase, knobs_set_while_running_are_checked_and_used);
+    tcase_add_test(tcase, settings_changed_while_running_are_checked_and_used);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

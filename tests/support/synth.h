@@ -4,7 +4,7 @@
  * shakes, and most of what makes real footage hard. Deterministic: the same config gives the same pixels and the same
  * truth. Any frame t >= 0 can be asked for, in any order. What is zero in a config is absent from the clip.
  *
- * Conventions are the public header's: pixels, origin at the frame's centre, x right, y down, 3x3 row-major.
+ * Conventions are the public header's: pixels, origin at the frame's center, x right, y down, 3x3 row-major.
  * The scene's unit is the pixel too (a larger frame sees more of it), and it repeats every SYNTH_SCENE_PX.
  */
 #ifndef SYNTH_H
@@ -61,7 +61,7 @@ typedef struct SynthConfig {
     double shake;         /* rms of the shake of each axis, px */
     double roll;          /* rms of the shake of the roll, rad */
     double zoom;          /* rms of the shake of the zoom, as a ratio: 0.02 is about +-2 % */
-    double noise;         /* sigma of the luma noise, grey levels */
+    double noise;         /* sigma of the luma noise, gray levels */
     double foreground;    /* part of the frame that objects with a motion of their own cover, [0, 0.75] */
     L1L2StabChromaSite chroma_site;
     uint64_t seed;        /* of the scene, the shake and the noise */
@@ -81,7 +81,7 @@ typedef struct SynthConfig {
     unsigned overlay;     /* SYNTH_OVERLAY_* */
     int repeat_every;     /* n > 1: every n-th frame is the one before it again, 5: 24 frames as 30 */
     bool fresh_noise;     /* repeated frames have noise of their own */
-    double coding;        /* step to which levels are rounded, otherwise in each frame and block; grey levels */
+    double coding;        /* step to which levels are rounded, otherwise in each frame and block; gray levels */
     SynthEvent event[SYNTH_MAX_EVENTS];
 } SynthConfig;
 
@@ -100,7 +100,7 @@ void synth_camera(const Synth *s, int t, double M[9]);
 /* The camera at any time, in frames; it may be negative. */
 void synth_camera_at(const Synth *s, double frames, double M[9]);
 
-/* When the row of frame t that lies y px below its centre was taken, in frames: t + readout fps y / height, or, where
+/* When the row of frame t that lies y px below its center was taken, in frames: t + readout fps y / height, or, where
  * frame t is a repeated one, the time of that. Chroma rows too are taken when their own y says. */
 double synth_row_time(const Synth *s, int t, double y);
 

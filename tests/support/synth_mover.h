@@ -6,9 +6,9 @@
 #include "synth.h"
 
 typedef struct SynthMover {
-    double x, y;               /* centre in the frame, px */
+    double x, y;               /* center in the frame, px */
     double half_w, half_h;     /* semi-axes, px; nothing if 0 */
-    double texture_x, texture_y; /* of its centre in the scene's tile, px */
+    double texture_x, texture_y; /* of its center in the scene's tile, px */
 } SynthMover;
 
 /* Where the foreground is for a camera at M, at a time in frames. Returns how many there are. */

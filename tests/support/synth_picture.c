@@ -40,11 +40,11 @@ SynthLayout synth_layout_of(L1L2StabFormat format)
     abort();
 }
 
-static SynthAxis axis(int log2_sub, bool centred)
+static SynthAxis axis(int log2_sub, bool centered)
 {
     if (!log2_sub)
         return (SynthAxis){1.0, 0.5};
-    return (SynthAxis){2.0, centred ? 1.0 : 0.5};
+    return (SynthAxis){2.0, centered ? 1.0 : 0.5};
 }
 
 SynthAxis synth_axis_x(const SynthLayout *layout, int plane, L1L2StabChromaSite site)

@@ -30,7 +30,7 @@ SynthAxis synth_axis_y(const SynthLayout *layout, int plane, L1L2StabChromaSite 
 void synth_store(const SynthLayout *layout, int plane, int which, const SynthSpan *span, const uint16_t *code,
                  uint8_t *row);
 
-/* Y, U and V of one span of 8 bits into a packed format, full-range BT.601: the grey of R, G, B is the luma again. */
+/* Y, U and V of one span of 8 bits into a packed format, full-range BT.601: the gray of R, G, B is the luma again. */
 void synth_store_packed(const SynthLayout *layout, const SynthSpan *span, uint16_t code[3][SYNTH_SPAN], uint8_t *row);
 
 #endif

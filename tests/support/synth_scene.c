@@ -120,14 +120,14 @@ static void draw_shape(float *tile, int log2_size, uint64_t key)
     }
 }
 
-/* Grey levels centre +- reach, softly clipped. */
-static SynthTile quantize(const float *tile, int log2_size, float gain, float centre, float reach)
+/* Gray levels center +- reach, softly clipped. */
+static SynthTile quantize(const float *tile, int log2_size, float gain, float center, float reach)
 {
     const size_t count = (size_t)1 << (2 * log2_size);
     SynthTile out = {log2_size, synth_alloc(count, sizeof *out.texel)};
     for (size_t i = 0; i < count; i++) {
         const float v = tile[i] * gain;
-        out.texel[i] = (uint16_t)((centre + reach * v / sqrtf(1.0f + v * v)) * 128.0f + 0.5f);
+        out.texel[i] = (uint16_t)((center + reach * v / sqrtf(1.0f + v * v)) * 128.0f + 0.5f);
     }
     return out;
 }
@@ -188,9 +188,9 @@ void synth_tile_lookup(const SynthTile *tile, double x, double y, double dx, dou
     const int bits = tile->log2_size, shift = 32 - bits;
     const uint32_t mask = (1u << bits) - 1u;
     const double turn = 0x1p32 / SYNTH_SCENE_PX; /* the tile's width is 2^32 */
-    const double centre = (double)(1u << (shift - 1)); /* texel centres are at half-integers too */
-    uint32_t u = (uint32_t)(int64_t)floor(fmod(x, SYNTH_SCENE_PX) * turn - centre);
-    uint32_t v = (uint32_t)(int64_t)floor(fmod(y, SYNTH_SCENE_PX) * turn - centre);
+    const double center = (double)(1u << (shift - 1)); /* texel centers are at half-integers too */
+    uint32_t u = (uint32_t)(int64_t)floor(fmod(x, SYNTH_SCENE_PX) * turn - center);
+    uint32_t v = (uint32_t)(int64_t)floor(fmod(y, SYNTH_SCENE_PX) * turn - center);
     const uint32_t du = (uint32_t)(int64_t)floor(dx * turn + 0.5), dv = (uint32_t)(int64_t)floor(dy * turn + 0.5);
     for (int i = 0; i < n; i++, u += du, v += dv) {
         const uint32_t x0 = u >> shift, x1 = (x0 + 1u) & mask, fx = (u >> (shift - 11)) & 2047u;

@@ -16,7 +16,7 @@
 /* A square periodic picture of 2^log2_size texels a side that covers SYNTH_SCENE_PX. */
 typedef struct SynthTile {
     int log2_size;
-    uint16_t *texel; /* grey level x 128 */
+    uint16_t *texel; /* gray level x 128 */
 } SynthTile;
 
 typedef struct SynthScene {
@@ -28,7 +28,7 @@ typedef struct SynthScene {
 void synth_scene_init(SynthScene *scene, uint64_t seed, bool with_mask);
 void synth_scene_clear(SynthScene *scene);
 
-/* n samples of a tile, grey levels x SYNTH_DEEP, from scene position (x, y) px on, in steps of (dx, dy) px. */
+/* n samples of a tile, gray levels x SYNTH_DEEP, from scene position (x, y) px on, in steps of (dx, dy) px. */
 void synth_tile_lookup(const SynthTile *tile, double x, double y, double dx, double dy, int n, uint16_t *deep);
 
 /* An equally distributed 64 bit number for each key (splitmix64's finalizer). */

@@ -58,7 +58,7 @@ void synth_sensor_expose(const SynthMoment *m, int width, const SynthSpan *span,
         cover(m, width, span, deep);
     if (m->gain == 1.0 && m->white == 0.0 && m->black == 0.0)
         return;
-    /* level -> contrast * level + brightness: the gain, then towards white, then towards black; chroma fades to grey */
+    /* level -> contrast * level + brightness: the gain, then towards white, then towards black; chroma fades to gray */
     const double fade = (1.0 - m->white) * (1.0 - m->black), contrast = m->gain * fade;
     const double brightness = span->component ? neutral_level * (1.0 - contrast)
                               : white_level * m->white * (1.0 - m->black) + black_level * m->black;

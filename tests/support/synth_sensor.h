@@ -7,10 +7,10 @@
 #include "synth_timeline.h"
 
 typedef struct SynthSensor {
-    double noise;    /* sigma, grey levels */
-    double coding;   /* step, grey levels */
-    int8_t *coarse;  /* the noise in grey levels; NULL without noise */
-    int16_t *fine;   /* the same noise in 1/256 grey levels */
+    double noise;    /* sigma, gray levels */
+    double coding;   /* step, gray levels */
+    int8_t *coarse;  /* the noise in gray levels; NULL without noise */
+    int16_t *fine;   /* the same noise in 1/256 gray levels */
 } SynthSensor;
 
 void synth_sensor_init(SynthSensor *sensor, const SynthConfig *cfg);

@@ -5,14 +5,14 @@
 
 enum {
     SYNTH_SPAN = 256, /* samples, at most */
-    SYNTH_DEEP = 64   /* samples are worked on as grey levels x 64, 14 bits */
+    SYNTH_DEEP = 64   /* samples are worked on as gray levels x 64, 14 bits */
 };
 
 typedef struct SynthSpan {
     int component; /* 0 luma, 1 and 2 chroma */
     int i, j;      /* column and row of the first sample in its plane */
     int count;
-    double x, y;   /* of the first sample in the frame, px from its centre */
+    double x, y;   /* of the first sample in the frame, px from its center */
     double step;   /* px from sample to sample */
 } SynthSpan;
 

@@ -22,7 +22,7 @@ typedef struct SynthTrial {
     double stage_ms[L1L2STAB_STAGE_COUNT]; /* a frame */
 } SynthTrial;
 
-/* The first `frames` frames, in grey of 8 bits or another format, with the library's defaults. Aborts when out of
+/* The first `frames` frames, in gray of 8 bits or another format, with the library's defaults. Aborts when out of
  * memory. */
 SynthTrial synth_trial_new(const SynthConfig *cfg, int frames);
 SynthTrial synth_trial_in(const SynthConfig *cfg, int frames, L1L2StabFormat format);

@@ -13,7 +13,7 @@ static const float last_step = 0.03f;
 static const float same_step = 0.01f;
 /* A window whose smaller eigenvalue is below this has too little texture; about a third of a gray level a pixel. */
 static const float min_eigenvalue = 1e-4f;
-/* Scales the integer sums. Every step is a ratio in which it cancels: slopes, 32 per grey level and pixel, and grey
+/* Scales the integer sums. Every step is a ratio in which it cancels: slopes, 32 per gray level and pixel, and gray
  * levels, with 5 fractional bits, have the same unit. It only sets the unit of min_eigenvalue. */
 static const float unit = 1.0f / (1 << 20);
 

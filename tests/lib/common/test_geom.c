@@ -83,7 +83,7 @@ START_TEST(an_inverse_undoes_its_map_on_both_sides)
 }
 END_TEST
 
-START_TEST(what_has_no_inverse_says_so_and_gives_the_identity)
+START_TEST(a_map_without_an_inverse_is_reported_and_gives_the_identity)
 {
     L1L2Mat none[] = {l1l2_mat_diagonal(0.0, 1.0), {{0}}, l1l2_mat_identity(), l1l2_mat_identity()};
     none[2].m[4] = NAN;
@@ -115,7 +115,7 @@ START_TEST(the_corner_distance_is_that_of_the_worst_corner)
 {
     const L1L2Mat identity = l1l2_mat_identity(), moved = l1l2_mat_translation(3.0, -4.0);
     ck_assert_near(l1l2_mat_corner_distance(&identity, &moved, 320.0, 180.0), 5.0, 1e-12);
-    /* Turned about the frame's centre, every corner moves by its distance from it; about a corner, the opposite one. */
+    /* Turned about the frame's center, every corner moves by its distance from it; about a corner, the opposite one. */
     const double angle = 0.01, half = hypot(320.0, 180.0);
     const L1L2Mat turn = l1l2_mat_similarity(cos(angle), sin(angle), 0.0, 0.0);
     ck_assert_near(l1l2_mat_corner_distance(&identity, &turn, 320.0, 180.0), 2.0 * sin(0.5 * angle) * half, 1e-12);
@@ -144,7 +144,7 @@ int main(void)
     tcase_add_test(tc, the_identity_leaves_points_alone);
     tcase_add_test(tc, a_product_applies_its_right_factor_first);
     tcase_add_test(tc, an_inverse_undoes_its_map_on_both_sides);
-    tcase_add_test(tc, what_has_no_inverse_says_so_and_gives_the_identity);
+    tcase_add_test(tc, a_map_without_an_inverse_is_reported_and_gives_the_identity);
     tcase_add_test(tc, a_rescaled_map_is_the_same_map_in_the_other_unit);
     tcase_add_test(tc, the_corner_distance_is_that_of_the_worst_corner);
     tcase_add_test(tc, one_number_that_is_not_finite_is_noticed);

@@ -12,7 +12,7 @@ START_TEST(the_numbers_are_those_of_pcg32)
 }
 END_TEST
 
-START_TEST(neighbouring_seeds_give_different_numbers)
+START_TEST(neighboring_seeds_give_different_numbers)
 {
     L1L2Rng a = l1l2_rng_seeded(1), b = l1l2_rng_seeded(2);
     int equal = 0;
@@ -50,7 +50,7 @@ int main(void)
     Suite *suite = suite_create("rng");
     TCase *tc = tcase_create("rng");
     tcase_add_test(tc, the_numbers_are_those_of_pcg32);
-    tcase_add_test(tc, neighbouring_seeds_give_different_numbers);
+    tcase_add_test(tc, neighboring_seeds_give_different_numbers);
     tcase_add_test(tc, below_gives_each_number_below_its_bound_as_often);
     tcase_add_test(tc, below_one_is_zero);
     suite_add_tcase(suite, tc);

@@ -63,7 +63,7 @@ static uint32_t sample(const Trial *t, int x, int y, int component)
     return l1l2_image_format_bytes(t->format) == 1 ? row[i] : ((const uint16_t *)(const void *)row)[i];
 }
 
-/* A pixel's grey level, in units of 8 bits. */
+/* A pixel's gray level, in units of 8 bits. */
 static double grey(const Trial *t, int x, int y)
 {
     double sum = 0.0;

@@ -98,7 +98,7 @@ static double grey_weight(L1L2StabFormat format, int component)
     return l1l2_image_format_info(format)->grey[component];
 }
 
-START_TEST(grey_is_made_of_the_right_components)
+START_TEST(gray_is_made_of_the_right_components)
 {
     static const L1L2StabFormat luma_first[] = {L1L2STAB_FORMAT_NV21, L1L2STAB_FORMAT_P010_10LE, L1L2STAB_FORMAT_YUY2};
     static const L1L2StabFormat luma_second[] = {L1L2STAB_FORMAT_UYVY, L1L2STAB_FORMAT_AYUV, L1L2STAB_FORMAT_AYUV64};
@@ -115,7 +115,7 @@ START_TEST(grey_is_made_of_the_right_components)
 }
 END_TEST
 
-START_TEST(grey_of_white_is_white)
+START_TEST(gray_of_white_is_white)
 {
     for (int id = FIRST; id <= LAST; id++) {
         double sum = 0.0;
@@ -136,8 +136,8 @@ int main(void)
     tcase_add_test(tc, planes_of_a_frame_have_the_right_number_of_bytes);
     tcase_add_test(tc, y42b_is_halved_across_and_not_down);
     tcase_add_test(tc, halved_planes_of_odd_sizes_are_rounded_up);
-    tcase_add_test(tc, grey_is_made_of_the_right_components);
-    tcase_add_test(tc, grey_of_white_is_white);
+    tcase_add_test(tc, gray_is_made_of_the_right_components);
+    tcase_add_test(tc, gray_of_white_is_white);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);
 }

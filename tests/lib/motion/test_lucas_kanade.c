@@ -145,7 +145,7 @@ START_TEST(windows_read_nothing_beyond_the_borders)
 }
 END_TEST
 
-/* Slopes and grey levels as far apart as Scharr's filter and bytes can be. */
+/* Slopes and gray levels as far apart as Scharr's filter and bytes can be. */
 START_TEST(every_processor_gives_the_sums_and_patches_of_plain_c)
 {
     L1L2LkFunctions plain;

@@ -68,7 +68,7 @@ static double error_of(const L1L2SelectedModel *r, const L1L2Mat *truth)
 static const L1L2Mat camera = {{1.001, -0.002, 0.006, 0.002, 1.001, -0.004, 0.0, 0.0, 1.0}};
 static const L1L2Mat walker = {{1.0, 0.0, 0.03, 0.0, 1.0, 0.001, 0.0, 0.0, 1.0}};
 
-START_TEST(a_textured_walker_does_not_outvote_a_spread_background)
+START_TEST(a_textured_walker_does_not_outweigh_a_spread_background)
 {
     L1L2ModelSelection l = selection_new(L1L2STAB_MOTION_MODEL_SIMILARITY);
     setup();
@@ -311,7 +311,7 @@ int main(void)
 {
     Suite *suite = suite_create("model_selection");
     TCase *tcase = tcase_create("model_selection");
-    tcase_add_test(tcase, a_textured_walker_does_not_outvote_a_spread_background);
+    tcase_add_test(tcase, a_textured_walker_does_not_outweigh_a_spread_background);
     tcase_add_test(tcase, tracks_that_moved_with_the_camera_before_count_more);
     tcase_add_test(tcase, of_two_motions_of_equal_weight_neither_is_followed);
     tcase_add_test(tcase, two_depths_of_one_scene_do_not_compete);

@@ -17,7 +17,7 @@ static inline SynthConfig small_clip(void)
     return cfg;
 }
 
-/* Frame t in grey. */
+/* Frame t in gray. */
 static inline void grey(const Synth *s, int t, uint8_t picture[PIXELS])
 {
     synth_render_gray(s, t, picture, WIDTH);

@@ -49,7 +49,7 @@ START_TEST(a_frame_is_the_one_before_moved_by_the_true_motion)
         double F[9];
         synth_motion(s, t, F);
         const double right = difference(s, t, F);
-        ck_assert_double_le(right, 1.5); /* grey levels: what bilinear sampling costs */
+        ck_assert_double_le(right, 1.5); /* gray levels: what bilinear sampling costs */
         F[2] += 0.5;
         ck_assert_double_ge(difference(s, t, F), 1.5 * right);
         F[2] -= 0.5, F[1] -= 0.01, F[3] += 0.01;
@@ -98,7 +98,7 @@ START_TEST(the_shake_has_the_strength_that_was_asked_for)
 }
 END_TEST
 
-START_TEST(all_planar_formats_show_the_same_and_packed_ones_its_grey)
+START_TEST(all_planar_formats_show_the_same_and_packed_ones_its_gray)
 {
     SynthConfig cfg = small_config();
     cfg.width = 321, cfg.height = 201;
@@ -173,7 +173,7 @@ int main(void)
     tcase_add_test(tc, a_frame_is_the_one_before_moved_by_the_true_motion);
     tcase_add_test(tc, the_motions_add_up_to_the_camera);
     tcase_add_test(tc, the_shake_has_the_strength_that_was_asked_for);
-    tcase_add_test(tc, all_planar_formats_show_the_same_and_packed_ones_its_grey);
+    tcase_add_test(tc, all_planar_formats_show_the_same_and_packed_ones_its_gray);
     tcase_add_test(tc, equal_configs_give_equal_bytes_and_other_seeds_other_ones);
     tcase_add_test(tc, a_view_through_the_camera_is_the_frame);
     suite_add_tcase(suite, tc);

@@ -55,7 +55,7 @@ START_TEST(a_dissolve_is_a_mix_of_both_shots)
 }
 END_TEST
 
-START_TEST(a_fade_goes_to_black_and_comes_back_and_takes_the_colours_with_it)
+START_TEST(a_fade_goes_to_black_and_comes_back_and_takes_the_colors_with_it)
 {
     static const double black[] = {0, 0.25, 0.5, 0.75, 1, 1, 1, 1, 0.75, 0.5, 0.25, 0};
     SynthConfig cfg = config_with(SYNTH_FADE_OUT, 5, 3, 0);
@@ -211,7 +211,7 @@ int main(void)
     tcase_set_timeout(tc, 60);
     tcase_add_test(tc, a_cut_shows_another_scene_from_its_frame_on);
     tcase_add_test(tc, a_dissolve_is_a_mix_of_both_shots);
-    tcase_add_test(tc, a_fade_goes_to_black_and_comes_back_and_takes_the_colours_with_it);
+    tcase_add_test(tc, a_fade_goes_to_black_and_comes_back_and_takes_the_colors_with_it);
     tcase_add_test(tc, black_frames_are_black_and_a_full_flash_is_white);
     tcase_add_test(tc, a_covered_lens_shows_nothing_and_then_the_scene_again);
     tcase_add_test(tc, the_gain_scales_the_levels);

@@ -311,9 +311,9 @@ static void run_edge(const L1L2ShutterParameters *parameters, double result[2])
 static void run_rows(const Recording *recording, const L1L2ShutterParameters *parameters, double result[2])
 {
     L1L2Rng rng = l1l2_rng_seeded(12);
-    double votes[TRACKS];
+    double consensus_weights[TRACKS];
     for (int i = 0; i < TRACKS; i++)
-        votes[i] = 1.0;
+        consensus_weights[i] = 1.0;
     result[0] = result[1] = 0.0;
     for (int t = 1; t <= 100; t++)
         for (int surfaces = 0; surfaces < 2; surfaces++) {
@@ -324,7 +324,7 @@ static void run_rows(const Recording *recording, const L1L2ShutterParameters *pa
             for (int i = 0; i < TRACKS && surfaces; i++)
                 pair[i].to = (L1L2Point){pair[i].from.x + (6.0 * (i % 2) + noise(&rng)) / diagonal_px(),
                                          pair[i].from.y + noise(&rng) / diagonal_px()};
-            const L1L2ShutterRowTracks tracks = {pair, votes, TRACKS, 0.5 * HEIGHT / diagonal_px(),
+            const L1L2ShutterRowTracks tracks = {pair, consensus_weights, TRACKS, 0.5 * HEIGHT / diagonal_px(),
                                                  threshold_px / diagonal_px(), parameters};
             result[surfaces] += l1l2_shutter_similarity_by_rows(&tracks, inlier, &fit) >= 0.7 * TRACKS;
         }

@@ -118,8 +118,8 @@ static int accept(const L1L2ShutterRowTracks *tracks, const L1L2Mat *plain, cons
         const L1L2Point r = residual(fit, &tracks->pairs[i]), first = residual(plain, &tracks->pairs[i]);
         near[i] = hypot(r.x - s.x, r.y - s.y) <= reach;
         inliers += near[i];
-        before += tracks->votes[i] * capped_square(tracks, first.x, first.y);
-        after += tracks->votes[i] * capped_square(tracks, r.x - s.x, r.y - s.y);
+        before += tracks->consensus_weights[i] * capped_square(tracks, first.x, first.y);
+        after += tracks->consensus_weights[i] * capped_square(tracks, r.x - s.x, r.y - s.y);
     }
     return after <= tracks->parameters->rows_unexplained * before ? inliers : 0;
 }

@@ -19,7 +19,7 @@ enum { L1L2_SHUTTER_ROWS_MAX_PAIRS = 512 };
 /* The tracks of a frame. Not owned. */
 typedef struct L1L2ShutterRowTracks {
     const L1L2Pair *pairs;
-    const double *votes; /* how much each pair counts in the acceptance test, >= 0 */
+    const double *consensus_weights; /* of each pair in the acceptance test, >= 0 */
     int count;           /* 0 to L1L2_SHUTTER_ROWS_MAX_PAIRS */
     double half_h;       /* half of the frame's height, > 0 */
     double threshold;    /* of an inlier, > 0 */

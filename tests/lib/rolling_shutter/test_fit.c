@@ -233,12 +233,12 @@ START_TEST(rows_that_are_displaced_smoothly_have_a_similarity_and_two_surfaces_h
 {
     const L1L2Mat F = l1l2_mat_similarity(1.0, 0.01, 0.02, 0.01);
     const L1L2ShutterResidual none = {{0.0}};
-    double votes[MAX];
+    double consensus_weights[MAX];
     for (int i = 0; i < MAX; i++)
-        votes[i] = 1.0;
+        consensus_weights[i] = 1.0;
     for (int surfaces = 0; surfaces < 2; surfaces++) {
         Scene s = scene_of(L1L2STAB_ROLLING_SHUTTER_MIXTURE, &F, &none);
-        const L1L2ShutterRowTracks tracks = {s.pair, votes, MAX, half_h, threshold, NULL};
+        const L1L2ShutterRowTracks tracks = {s.pair, consensus_weights, MAX, half_h, threshold, NULL};
         L1L2Mat fit;
         if (surfaces) {
             for (int i = 0; i < MAX; i += 2)
@@ -264,12 +264,12 @@ START_TEST(more_pairs_than_the_similarity_by_rows_takes_are_refused)
     const L1L2ShutterResidual none = {{0.0}};
     Scene s = scene_of(L1L2STAB_ROLLING_SHUTTER_MIXTURE, &F, &none);
     static L1L2Pair pairs[MANY];
-    static double votes[MANY];
+    static double consensus_weights[MANY];
     static bool inlier[MANY];
     displace_rows(&s);
     for (int i = 0; i < MANY; i++)
-        pairs[i] = s.pair[i % MAX], votes[i] = 1.0;
-    const L1L2ShutterRowTracks tracks = {pairs, votes, MANY, half_h, threshold, NULL};
+        pairs[i] = s.pair[i % MAX], consensus_weights[i] = 1.0;
+    const L1L2ShutterRowTracks tracks = {pairs, consensus_weights, MANY, half_h, threshold, NULL};
     L1L2Mat fit;
     ck_assert_int_eq(l1l2_shutter_similarity_by_rows(&tracks, inlier, &fit), 0);
 }

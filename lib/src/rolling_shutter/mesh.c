@@ -19,8 +19,7 @@
  *     combinations of the four nodes around them, so every sample is inside the source, too.
  *   - No fold. The map is continuous and increasing, so the order of the nodes along each axis stays.
  *   - No jump in time. As `most` passes `half`, the map is the identity; from there it is continuous in `most`, which
- *   is
- *     as smooth in time as B_t and the residual.
+ *     is as smooth in time as B_t and the residual.
  *   - All else keeps its correction: nodes more than an eighth of the side inside are not moved.
  */
 #include "rolling_shutter/mesh.h"

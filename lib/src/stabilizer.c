@@ -195,8 +195,8 @@ static void extend_path(L1L2Stab *s, const L1L2MotionResult *motion, const doubl
     add_solve_time(s, start_ns);
 }
 
-/* The path with a frame whose motion the caller gave. Such frames are not tracked: a measured one after them starts
- * from nothing. */
+/* Extends the path by a frame whose motion the caller gave. Such frames are not tracked, so a measured frame after them
+ * has no previous picture. */
 static void extend_path_as_given(L1L2Stab *s, const double given_px[9], bool starts_path)
 {
     const L1L2Mat none = l1l2_mat_identity();
@@ -374,8 +374,8 @@ static bool is_displayable(const L1L2Mat *C)
     return hypot(C->m[2], C->m[5]) <= limit && most <= limit && fabs(least) >= 1.0 / limit;
 }
 
-/* Makes sure that the oldest frame's path is decided, and accumulates C_t and P_t. Mostly it was decided long ago, and
- * the newest frame's motion can wait. */
+/* Makes sure that the oldest frame's path is decided, and accumulates C_t and P_t. Usually it was decided long ago,
+ * and there is no need to wait for the newest frame's motion. */
 static void fetch_path(L1L2Stab *s)
 {
     const L1L2PathFrame *next = l1l2_path_pull(s->path);

@@ -51,7 +51,7 @@ STAND_INS = {
     'v4l2src': f'videotestsrc is-live=true num-buffers={LIVE_FRAMES} ! video/x-raw,width=320,height=240',
     'pulsesrc': 'audiotestsrc is-live=true num-buffers=65',
     'autovideosink': 'identity eos-after=15 ! fakevideosink',
-    'rtspsrc': 'rtspsrc protocols=tcp', # no packet gets lost; nor does the server tell the end
+    'rtspsrc': 'rtspsrc protocols=tcp', # no packet gets lost; the server does not signal the end
     'rtsp://camera/stream': serve_film(),
 }
 

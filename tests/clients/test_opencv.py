@@ -9,7 +9,7 @@ import clip
 
 READER = sys.argv.pop(1) if len(sys.argv) > 1 else None
 if not READER:
-    print('skipped: not built, for want of libopencv-videoio-dev')
+    print('skipped: not built, because libopencv-videoio-dev is missing')
     sys.exit(clip.SKIPPED)
 clip.begin()
 FRAMES = 60

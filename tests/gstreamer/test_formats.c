@@ -155,7 +155,7 @@ ask_the_library (const GstVideoInfo * info, L1L2StabFormat format,
   GstVideoFrame inputs[N_FRAMES];
   L1L2StabConfig config;
   L1L2Stab *stab = NULL;
-  L1L2StabInfo told;
+  L1L2StabInfo reported;
   guint i, p;
 
   l1l2stab_config_init (&config, sizeof (config));
@@ -171,7 +171,7 @@ ask_the_library (const GstVideoInfo * info, L1L2StabFormat format,
 
     memset (&frame, 0, sizeof (frame));
     if (i >= WINDOW)
-      fail_unless_equals_int (l1l2stab_pull (stab, NULL, &told), L1L2STAB_OK);
+      fail_unless_equals_int (l1l2stab_pull (stab, NULL, &reported), L1L2STAB_OK);
     fail_unless (gst_video_frame_map (&inputs[i], info, frames[i],
             GST_MAP_READ));
     for (p = 0; p < GST_VIDEO_FRAME_N_PLANES (&inputs[i]); p++) {
@@ -182,8 +182,8 @@ ask_the_library (const GstVideoInfo * info, L1L2StabFormat format,
   }
   fail_unless_equals_int (l1l2stab_finish (stab), L1L2STAB_OK);
   for (i = N_FRAMES - WINDOW; i < N_FRAMES - 1; i++)
-    fail_unless_equals_int (l1l2stab_pull (stab, NULL, &told), L1L2STAB_OK);
-  memcpy (map, told.warp, sizeof (told.warp));
+    fail_unless_equals_int (l1l2stab_pull (stab, NULL, &reported), L1L2STAB_OK);
+  memcpy (map, reported.warp, sizeof (reported.warp));
   l1l2stab_free (&stab);
   for (i = 0; i < N_FRAMES; i++)
     gst_video_frame_unmap (&inputs[i]);

@@ -218,7 +218,7 @@ GST_END_TEST;
 GST_START_TEST (lateness_drops_no_input_whatever_qos_says)
 {
   GstHarness *h = stab_noise_harness_new (WINDOW);
-  gboolean told = FALSE;
+  gboolean found = FALSE;
   guint i;
 
   for (i = 0; i < 3 * WINDOW; i++) {
@@ -230,11 +230,11 @@ GST_START_TEST (lateness_drops_no_input_whatever_qos_says)
   gst_harness_push_event (h, gst_event_new_eos ());
   fail_unless_equals_int (gst_harness_buffers_received (h), 3 * WINDOW);
   /* The event goes upstream, where less work can be done. */
-  while (!told) {
+  while (!found) {
     GstEvent *event = gst_harness_try_pull_upstream_event (h);
 
     fail_unless (event != NULL);
-    told = GST_EVENT_TYPE (event) == GST_EVENT_QOS;
+    found = GST_EVENT_TYPE (event) == GST_EVENT_QOS;
     gst_event_unref (event);
   }
   stab_harness_free (h);

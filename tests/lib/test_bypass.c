@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The way from stabilized to untouched and back, in spite of the delay; and motions that are given back. */
+/* The bypass: the change from stabilized to untouched pictures and back, without delay. And reported motions that are
+ * given again. */
 #include "common/fade.h"
 #include "image/format.h"
 #include "stabilizer_fixture.h"
@@ -11,7 +12,7 @@ START_TEST(a_fade_is_exact_at_both_ends_and_never_jumps)
     L1L2Fade fade = {.length = 30};
     double last = 0.0;
     for (int i = 0; i < 200; i++) {
-        fade.on = i % 70 < 45; /* is thrown back on its way, too */
+        fade.on = i % 70 < 45; /* also reversed halfway */
         const double weight = l1l2_fade_next(&fade, false);
         ck_assert(weight >= 0.0 && weight <= 1.0 && fabs(weight - last) <= 1.5 / 30 + 1e-12);
         if (i % 70 == 29)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Whatever the footage, what comes out is no shakier than what went in, by the truth of synthetic clips. */
+/* No footage comes out shakier than it went in, by the true motion of synthetic clips. */
 #include "checkx.h"
 #include "synth_cases.h"
 #include "synth_trial.h"

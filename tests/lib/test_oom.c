@@ -198,7 +198,7 @@ static void run_failing(Run *run, int threads, int first_failing)
 START_TEST(an_error_of_measuring_is_returned_once_starts_a_path_and_loses_no_frame)
 {
     static Run run;
-    int told = 0;
+    int path_starts = 0;
     for (int first_failing = 0; first_failing < FRAMES; first_failing += 3) {
         run_failing(&run, 1 + _i, first_failing);
         ck_assert_int_eq(run.errors > 0, refused > 0);
@@ -218,9 +218,9 @@ START_TEST(an_error_of_measuring_is_returned_once_starts_a_path_and_loses_no_fra
         /* The frame before may still be tracked, and one that takes no memory does not fail. */
         for (int t = 1; t < first_failing - 1; t++)
             ck_assert(!(run.flags[t] & L1L2STAB_INFO_PATH_START));
-        told += starts;
+        path_starts += starts;
     }
-    ck_assert_int_gt(told, FRAMES / 3 / 2);
+    ck_assert_int_gt(path_starts, FRAMES / 3 / 2);
 }
 END_TEST
 

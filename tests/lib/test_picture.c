@@ -4,7 +4,7 @@
 
 #include "stabilizer_fixture.h"
 
-/* RMS of the second difference of the crop window's corner path, px: of the truth, as filmed and as given out. */
+/* RMS of the second difference of the crop window's corner path, px: of the truth, as filmed and as emitted. */
 static void true_jitter(const L1L2StabInfo *info, int frames, double *before, double *after)
 {
     Synth *synth = the_scene();
@@ -113,7 +113,7 @@ static void listen_to(void *cookie, L1L2StabLogLevel level, const char *message)
     listener->elsewhere += !pthread_equal(pthread_self(), listener->caller);
 }
 
-/* Gray frames: the tracking, which has a thread of its own, says that it is lost. */
+/* Gray frames: the tracking logs, from its own thread, that the motion is lost. */
 START_TEST(messages_come_on_the_callers_thread)
 {
     Listener listener = {.caller = pthread_self()};

@@ -81,7 +81,7 @@ typedef struct SynthConfig {
     unsigned overlay;     /* SYNTH_OVERLAY_* */
     int repeat_every;     /* n > 1: every n-th frame is the one before it again, 5: 24 frames as 30 */
     bool fresh_noise;     /* repeated frames have noise of their own */
-    double coding;        /* step to which levels are rounded, otherwise in each frame and block; gray levels */
+    double coding;        /* step to which levels are rounded, differently in each frame and block; gray levels */
     SynthEvent event[SYNTH_MAX_EVENTS];
 } SynthConfig;
 

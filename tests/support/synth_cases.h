@@ -9,7 +9,7 @@
 typedef enum SynthCaseKind {
     SYNTH_CASE_PLANAR, /* nothing but camera motion and noise of sigma 5 */
     SYNTH_CASE_HOLD,   /* who holds the camera: spectra, depth, blur, rolling shutter */
-    SYNTH_CASE_MOVER,  /* things that move by themselves */
+    SYNTH_CASE_MOVER,  /* moving subjects */
     SYNTH_CASE_EVENT,  /* cuts, light, what hides the scene; all after frame 40 and over by frame 130 */
     SYNTH_CASE_REPEAT, /* repeated and coded frames */
     SYNTH_CASE_OVERLAY /* what never moves */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Things that move by themselves: textured ellipses before the scene. They move over the frame, and do not turn. */
+/* Moving subjects: textured ellipses before the scene. They move over the frame, and do not turn. */
 #ifndef SYNTH_MOVER_H
 #define SYNTH_MOVER_H
 

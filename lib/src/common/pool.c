@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A persistent pool of threads. The caller of l1l2_pool_run() works too, so a pool of one has no helper at all and
- * runs inline. One mutex guards everything: parts are rows by the dozen, taking one costs next to nothing.
+ * A persistent pool of threads. The caller of l1l2_pool_run() works too, so a pool of one thread has no helper. One
+ * mutex guards everything. A part is dozens of rows, so taking one costs little in comparison.
  */
 #include "common/pool.h"
 
@@ -85,7 +85,7 @@ static void *help(void *arg)
     return NULL;
 }
 
-/* The program's signals are none of the helpers' business: they start with all of them blocked. */
+/* The helpers block all signals, so that the program's own threads handle them. */
 static void start_helpers(L1L2Pool *pool, int helpers)
 {
     sigset_t all, before;

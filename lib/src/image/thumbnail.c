@@ -7,8 +7,8 @@ enum { W = L1L2_THUMBNAIL_W, H = L1L2_THUMBNAIL_H, MAX_SHIFT_X = W / 8, MAX_SHIF
 
 static const double min_deviation = 4.0; /* gray levels: below it is noise and compression */
 static const double same_shot = 0.5;     /* correlation; two shots of different things are around 0 */
-/* A hand before the lens leaves parts of the picture unchanged: one shot if this part of the blocks matches this well.
- * */
+/* A hand before the lens leaves parts of the picture unchanged: it is one shot if this part of the blocks matches this
+ * well. */
 static const double same_block = 0.8, enough_blocks = 0.2;
 
 typedef struct Sums {

@@ -21,8 +21,7 @@ typedef struct L1L2ShotCut {
 void l1l2_motion_cut_start(L1L2ShotCut *shot, const L1L2Thumbnail *thumbnail);
 
 /* Takes the next frame. True if it starts another shot: its motion, or that of a frame shortly before, could not be
- * measured, and its picture differs from all that the shot has shown lately. A picture without detail starts no shot.
- * */
+ * measured, and its picture differs from all recent pictures of the shot. A picture without detail starts no shot. */
 bool l1l2_motion_cut_push(L1L2ShotCut *shot, const L1L2Thumbnail *thumbnail, bool measured);
 
 #endif

@@ -286,8 +286,8 @@ std::vector<cv::Point> spread_out(const std::vector<cv::Point> &maxima, cv::Size
 }
 
 /* Shi & Tomasi's corners of one area: the smaller eigenvalue of the structure tensor over 3x3 pixels, its local maxima
- * down to a part `quality` of the strongest. The result of cv::goodFeaturesToTrack(), which calls cv::parallel_for_().
- * */
+ * down to a part `quality` of the strongest. The result is that of cv::goodFeaturesToTrack(), which calls
+ * cv::parallel_for_(). */
 std::vector<cv::Point> corners_of(const cv::Mat &picture, const cv::Mat &mask, double quality, int quota,
                                   double distance)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The solver behind qp.h: OSQP (Stellato et al., Math. Prog. Comp. 2020), version 0.6. The only file that knows it.
+ * The solver behind qp.h: OSQP (Stellato et al., Math. Prog. Comp. 2020), version 0.6. The only file that uses it.
  *
  * Determinism. Everything that could make two runs differ, or that touches the process, is off: no clock (rho is fixed;
  * the bundled OSQP is built without PROFILING), no signal handler, no printing, no time limit. Polishing is off too: it

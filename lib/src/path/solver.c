@@ -122,7 +122,7 @@ static void solve_by_osqp_alone(L1L2PathSolver *s, const L1L2PathProblem *p, dou
     }
 }
 
-/* OSQP's opinion of a point that the predictor calls the optimum. */
+/* OSQP's check of a point that the predictor found. */
 static void check(L1L2PathSolver *s, const L1L2PathProblem *p, const L1L2PathPoint *point,
                   L1L2PathSolverReport *report)
 {

@@ -65,8 +65,7 @@ bool l1l2_warp_affine_scanline(const L1L2WarpAffine *affine, int taps, int u, in
     return true;
 }
 
-/* Sets `down` from the positions of the cells' sides. The first and the last piece continue beyond the outermost sides.
- * */
+/* Sets `down` from the positions of the cells' sides. The first and the last piece go on beyond the outermost sides. */
 static void set_down(L1L2WarpScanline *scanline, const double *x, const double *y, int cells)
 {
     int pieces = 0, from = scanline->first;

@@ -160,7 +160,7 @@ static void repeat(uint8_t *dst, const uint8_t *sample, int count, int sample_by
         memcpy(dst + i * sample_bytes, sample, (size_t)sample_bytes);
 }
 
-/* Writes what weighing in phase 0 gives; and bits outside a component's depth, which weighing drops, are kept. */
+/* Copies samples. Weighing in phase 0 gives the same, except that it drops bits outside a component's depth. */
 static void copy_band(const PlaneJob *job, int band)
 {
     const L1L2WarpPlane *src = &job->src;

@@ -102,8 +102,8 @@ END_TEST
 
 START_TEST(an_early_frame_is_the_optimum_of_the_frames_that_have_arrived)
 {
-    /* Given out early, of 60 frames: as if the stream had ended there. If it then does end, what was kept back is the
-     * optimum too: the frames that were given out bind it to the same one. */
+    /* Some of 60 frames are emitted early. They are the optimum as if the stream had ended there. If it does end there,
+     * the remaining frames are part of the same optimum, because the emitted frames are constants. */
     const Setup cfg = defaults();
     for (int given = 1; given <= 60; given += 7) {
         Run *ended = drifting_run(60, 1.0, 20.0, 6.0, 4), *early = drifting_run(60, 1.0, 20.0, 6.0, 4);

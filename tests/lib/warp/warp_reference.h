@@ -64,8 +64,8 @@ static inline L1L2Point source_position(const L1L2WarpConfig *cfg, const L1L2War
                        plane_position(from.y + cfg->in_height / 2.0, sub_y, top)};
 }
 
-/* Two output samples between which row v crosses a column on a straight line: the sides of a mesh's cell, or any two.
- * */
+/* Two output samples between which row v crosses a column on a straight line: the sides of a mesh's cell, or any
+ * two. */
 static inline void find_crossing(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, int plane, int v, int column,
                                  double side[2])
 {

@@ -29,8 +29,8 @@ L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, in
                                      int out_height);
 void l1l2_image_scale_free(L1L2AreaScaler *s);
 
-/* From now on the picture is stretched: [low, high) of the source's levels becomes [0, 256) of the gray picture, and
- * what is beyond is cut off. At first it is the full range. */
+/* From now on the picture is stretched: the source's levels [low, high) become [0, 256) of the gray picture, and levels
+ * beyond are clipped. A new scaler uses the full range. */
 void l1l2_image_scale_set_levels(L1L2AreaScaler *s, L1L2Levels levels);
 
 /* Writes the gray picture, 8 bits a pixel, to out. Strides are in bytes, of any sign and parity; data may have any

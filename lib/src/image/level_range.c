@@ -20,7 +20,7 @@ bool l1l2_image_levels_equal(L1L2Levels a, L1L2Levels b)
     return a.low == b.low && a.high == b.high;
 }
 
-/* The grey level of the pixel at p, whose components have two bytes. */
+/* The gray level of the pixel at p, whose components have two bytes. */
 static uint16_t grey_of(const L1L2FormatInfo *format, const uint8_t *p)
 {
     const int components = l1l2_image_format_pixel_components(format);

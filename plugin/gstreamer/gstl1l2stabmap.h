@@ -20,7 +20,7 @@ void gst_l1l2_stab_map_init (GstL1L2StabMap * map, const L1L2StabInfo * info,
     const GstVideoInfo * in_info, const GstVideoInfo * out_info);
 
 /* Replaces a box by the upright box around its image, rounded to the nearest pixel and clipped to width x height.
- * FALSE: nothing of it is left. */
+ * FALSE: the clipped box is empty. */
 gboolean gst_l1l2_stab_map_box (const gdouble matrix[9], guint width,
     guint height, GstVideoRectangle * box);
 

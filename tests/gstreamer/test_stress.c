@@ -58,7 +58,7 @@ has_frames (const Monitor * monitor)
   return FALSE;
 }
 
-/* What comes out must be the oldest that is inside. */
+/* A frame that comes out must be the oldest one that is held. */
 static void
 take_oldest (Monitor * monitor, GstClockTime mark)
 {

@@ -83,7 +83,7 @@ START_TEST(a_bypass_is_at_once_and_soft_and_leaves_the_path_alone)
         const L1L2Mat plain_now = mat_of(plain[t].warp), plain_before = mat_of(plain[t ? t - 1 : 0].warp);
         const double moved = l1l2_mat_corner_distance(&now, &before, WIDTH / 2.0, HEIGHT / 2.0);
         const double plainly = l1l2_mat_corner_distance(&plain_now, &plain_before, WIDTH / 2.0, HEIGHT / 2.0);
-        /* What the path does, and 5 % a frame of the way to the whole picture. */
+        /* The step of the path, and 5 % of the distance to the whole picture. */
         ck_assert_double_le(moved, plainly + 1.5 / L1L2STAB_BYPASS_FRAMES * hypot(WIDTH, HEIGHT) * 0.25);
     }
     for (int t = 0; t < FRAMES; t++) {

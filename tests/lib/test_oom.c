@@ -33,7 +33,8 @@ static void counting_free(void *p)
 
 static const L1L2MemHook hook = {counting_alloc, counting_free};
 
-/* What the imaging library's pictures come from: this one, not the C library's, since the program is searched first. */
+/* OpenCV allocates its pictures with posix_memalign(). The one below replaces that of the C library, because symbols of
+ * the program have precedence. */
 static atomic_bool failing;
 static atomic_int refused;
 

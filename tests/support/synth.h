@@ -67,7 +67,7 @@ typedef struct SynthConfig {
     uint64_t seed;        /* of the scene, the shake and the noise */
     double turn;          /* the camera's steady roll, rad/frame */
     double vibration;     /* amplitude of a vibration of each axis, px */
-    double vibration_roll; /* ditto of the roll, rad */
+    double vibration_roll; /* the same of the roll, rad */
     double vibration_hz;
     double readout;       /* rolling shutter: from the first row's time to the last row's, s; 0: all rows at once */
     SynthHold hold;

@@ -287,7 +287,7 @@ typedef enum L1L2StabStage {
     L1L2STAB_STAGE_COUNT = 5  /* stages so far; a later version may add some, up to 8 */
 } L1L2StabStage;
 
-/* What was measured of a frame and done to it. pull() writes all of it and reads none of it, so it needs no
+/* The measurements of a frame, and what was done to it. pull() overwrites the whole struct, so it needs no
  * initialization. Matrices as at the top of this file, in pixels. */
 typedef struct L1L2StabInfo {
     uint64_t index;      /* the frame's number since create or reset, from 0 */

@@ -24,7 +24,7 @@ typedef struct L1L2Pyramid {
     int levels; /* fewer than L1L2_PYRAMID_MAX_LEVELS for pictures that a border would outgrow */
     L1L2LkLevel level[L1L2_PYRAMID_MAX_LEVELS]; /* [0] is the picture itself */
     uint8_t *grey[L1L2_PYRAMID_MAX_LEVELS];     /* the levels' pixels (0, 0), to be written to */
-    int16_t *slope[L1L2_PYRAMID_MAX_LEVELS];    /* ditto */
+    int16_t *slope[L1L2_PYRAMID_MAX_LEVELS];    /* the levels' slopes, to be written to */
     void *memory;
 } L1L2Pyramid;
 

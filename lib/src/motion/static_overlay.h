@@ -15,7 +15,7 @@
 typedef struct L1L2StaticOverlay {
     const L1L2MotionParameters *parameters;
     double half_w, half_h;         /* of the frame, in the pairs' unit */
-    double pixel;                  /* of the downscaled picture, ditto */
+    double pixel;                  /* of the downscaled picture, in the pairs' unit */
     double score[L1L2_MASK_CELLS]; /* tracks that stood still in the cell, less those that did not */
 } L1L2StaticOverlay;
 

@@ -211,7 +211,7 @@ static void advance(L1L2Path *path, bool ended)
         solve_window(path, &step);
 }
 
-/* The crop ratio of the next frame, on the way to the one that is wanted. */
+/* The crop ratio of the next frame: at most one step closer to the one that is wanted. */
 static double step_crop_ratio(const L1L2Path *path, const L1L2PathInput *input, bool starts_path)
 {
     const double change = input->crop_ratio - path->crop_ratio;
@@ -220,7 +220,7 @@ static double step_crop_ratio(const L1L2Path *path, const L1L2PathInput *input, 
     return path->crop_ratio + copysign(L1L2_CROP_STEP, change);
 }
 
-/* What the path uses of a motion. */
+/* The motion as a map of the path's model; the identity if F is not finite or not invertible. */
 static L1L2Mat usable_motion(const L1L2Path *path, const L1L2Mat *F)
 {
     const L1L2Mat motion = l1l2_mat_reduce(F, path->problem->dim);

@@ -39,14 +39,14 @@ typedef struct L1L2PathConfig {
     L1L2FrameColumn frames; /* of L1L2PathFrame; at least window + L1L2_PATH_PAST rows */
 } L1L2PathConfig;
 
-/* What the path knows of a frame: its part of the frame's record. Nobody else writes it. */
+/* The path's part of a frame's record. Only the path writes it. */
 typedef struct L1L2PathFrame {
     L1L2Mat F, B;        /* motion, update transform */
     L1L2Mat next_B;      /* for blend: the B that a window found for a frame that the next window emits */
     L1L2Mat S;           /* smooth step P_{t-1}^-1 P_t; identity at a path's first frame */
     uint64_t path_index; /* frames since the path's start */
     double lambda;       /* as it was when the frame was pushed */
-    double crop_ratio;   /* in effect: on the way to the one that was set */
+    double crop_ratio;   /* in effect for this frame: after a change it ramps to the new setting */
     bool early;          /* decided by an early window, with a shorter look-ahead */
     bool fallback;       /* no solver converged: the path is feasible and continuous, but not the optimum */
     L1L2PathSolverReport report; /* of the frame's window */

@@ -5,8 +5,8 @@
  * Rows that are read one after the other, a lens, and depth all leave a residual that is a function of how the camera
  * moves. A subject that moves by itself leaves one that is not, however large and slow it is, and wherever it is in the
  * picture. So the residual of each frame is predicted from the camera's motions around it, by a linear regression that
- * was learned from the frames before. What the prediction explains is the camera's. A residual that follows the camera
- * by chance soon scores negative, because each frame is predicted before it is learned.
+ * was learned from the frames before. The part that the prediction explains is the camera's. A residual that follows
+ * the camera by chance soon scores negative, because each frame is predicted before it is learned.
  *
  * This is not part of G2011, which limits the homographies' terms instead. Convention: as in model.h.
  */

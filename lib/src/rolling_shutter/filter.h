@@ -29,7 +29,7 @@
 
 typedef struct L1L2ShutterFilter L1L2ShutterFilter;
 
-/* What the filter knows of a frame: its part of the frame's record. Nobody else writes it. */
+/* The filter's part of a frame's record. Only the filter writes it. */
 typedef struct L1L2ShutterFrame {
     L1L2ShutterMeasurement measurement; /* zero where there is none */
     bool measured;
@@ -55,7 +55,7 @@ typedef struct L1L2ShutterFilterConfig {
 L1L2StabResult l1l2_shutter_filter_create(L1L2ShutterFilter **out, const L1L2ShutterFilterConfig *cfg);
 void l1l2_shutter_filter_free(L1L2ShutterFilter *filter);
 
-/* Makes the filter as good as new. Keeps its memory. */
+/* Forgets all frames. The memory is kept. */
 void l1l2_shutter_filter_reset(L1L2ShutterFilter *filter);
 
 /* Takes the next frame; the first one after create or reset is number 0. Its motion is in its row already: the identity

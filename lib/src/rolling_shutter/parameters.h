@@ -4,7 +4,7 @@
  * are in parameters.c, each with the measurement or the source that chose it.
  *
  * Lengths are in the frame's diagonals unless a field says "thresholds": those are multiples of the inlier threshold
- * that motion/ uses for its tracks. What is explained is a part of a sum of squares: 1 is all of it, 0 nothing.
+ * that motion/ uses for its tracks. "Explained" is a part of a sum of squares: 1 is all of it, 0 nothing.
  */
 #ifndef L1L2_ROLLING_SHUTTER_PARAMETERS_H
 #define L1L2_ROLLING_SHUTTER_PARAMETERS_H
@@ -52,7 +52,7 @@ typedef struct L1L2ShutterParameters {
 
 extern const L1L2ShutterParameters l1l2_shutter_default_parameters;
 
-/* Where an owner may leave the table out: NULL stands for the default values. */
+/* The given table, or the default values if it is NULL. */
 static inline const L1L2ShutterParameters *l1l2_shutter_parameters_or_default(const L1L2ShutterParameters *parameters)
 {
     return parameters ? parameters : &l1l2_shutter_default_parameters;

@@ -32,7 +32,7 @@ void l1l2_shutter_readout_learn(L1L2ShutterReadout *readout, const L1L2ShutterRe
 /* The estimate, scaled by its confidence; in [-max_readout, max_readout]; 0 where it is not known. */
 double l1l2_shutter_readout_estimate(const L1L2ShutterReadout *readout, const L1L2ShutterParameters *parameters);
 
-/* The confidence that a value stands for: 0 at ramp.none, 1 at ramp.full, linear between, clipped. The two must differ;
+/* The confidence of a value: 0 at ramp.none, 1 at ramp.full, linear between, clipped. The two must differ;
  * either may be the larger. */
 double l1l2_shutter_ramp(double value, L1L2ShutterRamp ramp);
 

@@ -7,7 +7,7 @@
  * filled once, when the object that uses it is created. All entries give the same bytes: tests fill one table with
  * L1L2_CPU_PLAIN and compare.
  *
- * Code for an architecture stands in a folder beside the plain C (x86/), in files that are compiled with the flags of
+ * Code for an architecture is in a folder beside the plain C (x86/), in files that are compiled with the flags of
  * their instruction set (lib/meson.build).
  */
 #ifndef L1L2_COMMON_CPU_H

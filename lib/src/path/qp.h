@@ -9,7 +9,7 @@
 
 #include <l1l2stab/l1l2stab.h>
 
-#define L1L2_PATH_QP_INFINITY 1e30 /* stands for no bound */
+#define L1L2_PATH_QP_INFINITY 1e30 /* no bound */
 
 /* A in compressed sparse columns. */
 typedef struct L1L2PathQp {

@@ -108,7 +108,7 @@ void *l1l2_path_osqp_realloc(void *data, size_t size)
     return moved;
 }
 
-/* setjmp() stands alone in a function that changes no variable of its own: their values would be lost. */
+/* A function of its own for setjmp(): local variables that change after it would have no defined value. */
 static L1L2StabResult solve_unless_exhausted(const Task *task)
 {
     if (setjmp(memory->exhausted) != 0)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The other tests' ground: the synthetic clips move as they say they do. */
+/* The synthetic clips, on which other tests rely, move as their configs say. */
 #include <string.h>
 
 #include "checkx.h"

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Synthetic clips in which corners fail: sudden jerks that blur single frames, low contrast, thermal cameras, repeated
+ * texture, rain and snow, dense overlays, two motions, fast zoom, steps of the exposure, a dark stage. Grey, 8 bits.
+ *
+ * The camera and its conventions are synth.h's. A frame's exposure is the mean of at least 16 instants where the camera
+ * moves by more than a pixel meanwhile, and its true motion is that of the middle of its exposure. Deterministic: the
+ * same config gives the same pixels and the same truth, in any order of the frames.
+ */
+#ifndef SYNTH_HARD_H
+#define SYNTH_HARD_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "synth.h"
+
+/* What is seen. */
+typedef enum SynthHardScene {
+    SYNTH_HARD_PLAIN = 0, /* the scene of synth.h */
+    SYNTH_HARD_TILES,     /* a floor of equal tiles, 24 px a side, with faint stains */
+    SYNTH_HARD_STARS,     /* a dark sky with a few hundred stars */
+    SYNTH_HARD_STAGE      /* the scene in the dark, lit by three spots that move by themselves */
+} SynthHardScene;
+
+/* What covers part of it. */
+typedef enum SynthHardCover {
+    SYNTH_HARD_OPEN = 0,
+    SYNTH_HARD_WATER,  /* below: another scene with a drift of its own beside the camera's motion */
+    SYNTH_HARD_HEAD,   /* an ellipse in the middle, which stays in the frame but for a sway of its own */
+    SYNTH_HARD_RAIN,   /* bright streaks, 40 px a frame */
+    SYNTH_HARD_SNOW,   /* bright dots, 9 px a frame */
+    SYNTH_HARD_SPECKS, /* dirt on the lens: dark dots that never move */
+    SYNTH_HARD_LABELS  /* text on the picture that never moves */
+} SynthHardCover;
+
+typedef struct SynthHardConfig {
+    int width, height;      /* pixels */
+    uint64_t seed;
+    SynthHardScene scene;
+    SynthHardCover cover;
+    double covered;         /* WATER and HEAD: part of the frame, [0, 1] */
+    int count;              /* RAIN, SNOW, SPECKS, LABELS: how many */
+    double shake, roll;     /* as in SynthConfig */
+    double zoom;            /* the camera's steady zoom: ln of the scale a frame */
+    int jerk_from, jerks;   /* frames [jerk_from, jerk_from + jerks) are blurred by a jerk of the camera, each in a
+                             * direction of its own; jerk_every > 0: and again after so many frames */
+    int jerk_every;
+    double jerk_px;         /* length of the blur, px */
+    double contrast;        /* of the scene, 1 as it is, about 45 grey levels of deviation; 0 counts as 1 */
+    double levels;          /* thermal: the scene is squeezed into so many grey levels; 0: not */
+    double pattern;         /* sigma of a noise that is the same in every frame, grey levels */
+    double noise;           /* sigma of the noise of each frame, grey levels */
+    int step_at;            /* from this frame on the gain is `step_gain`; 0: never */
+    double step_gain;
+} SynthHardConfig;
+
+typedef struct SynthHard SynthHard;
+
+/* Never NULL: aborts when out of memory. */
+SynthHard *synth_hard_new(const SynthHardConfig *cfg);
+void synth_hard_free(SynthHard *s);
+
+/* Another clip of the same size and seed: the scene, which takes the most time, is not drawn again. */
+void synth_hard_change(SynthHard *s, const SynthHardConfig *cfg);
+
+/* M_t: frame t to the scene, at the middle of its exposure. */
+void synth_hard_camera(const SynthHard *s, int t, double M[9]);
+
+/* The motion from frame t to frame t - back: M_{t-back}^-1 M_t. */
+void synth_hard_motion(const SynthHard *s, int t, int back, double F[9]);
+
+/* How far the picture's centre moves over the exposure of frame t, px. */
+void synth_hard_blur(const SynthHard *s, int t, double *x, double *y);
+
+/* Frame t; stride in bytes. */
+void synth_hard_render(const SynthHard *s, int t, uint8_t *data, ptrdiff_t stride);
+
+/* Named configurations, one of each kind, of 640x360 pixels and without noise. */
+typedef struct SynthHardCase {
+    const char *name;
+    SynthHardConfig cfg;
+} SynthHardCase;
+
+extern const SynthHardCase synth_hard_cases[];
+extern const int synth_hard_case_count;
+
+/* Aborts where there is none. */
+const SynthHardCase *synth_hard_case_named(const char *name);
+
+/* A case's config at another width of the same proportions: what is measured in pixels goes with it. */
+SynthHardConfig synth_hard_case_at(const SynthHardCase *c, int width);
+
+#endif

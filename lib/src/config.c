@@ -35,6 +35,7 @@ void l1l2stab_config_init(L1L2StabConfig *cfg, size_t struct_size)
         .weights = {1.0, 1.0, 1.0},
         .motion_model = L1L2STAB_MOTION_MODEL_SIMILARITY,
         .rolling_shutter = L1L2STAB_ROLLING_SHUTTER_MIXTURE,
+        .pixel_aspect = 1.0,
     };
     if (!cfg || struct_size < sizeof cfg->struct_size)
         return;
@@ -101,7 +102,7 @@ static bool ranges_fit(const L1L2StabConfig *cfg)
                     L1L2STAB_MOTION_MODEL_AFFINE) &&
            in_range(cfg, "rolling_shutter", cfg->rolling_shutter, L1L2STAB_ROLLING_SHUTTER_NONE,
                     L1L2STAB_ROLLING_SHUTTER_MIXTURE) &&
-           weights_fit(cfg);
+           in_range(cfg, "pixel_aspect", cfg->pixel_aspect, 0.1, 10) && weights_fit(cfg);
 }
 
 /* Fields that the caller's config knows but this library does not: the logger is one that both know. */

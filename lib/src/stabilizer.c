@@ -32,7 +32,7 @@ struct L1L2Stab {
     L1L2StabConfig cfg;
     const L1L2FormatInfo *format;
     int out_width, out_height;
-    double diagonal_px;
+    double diagonal_px;        /* of the frame as it is shown */
     L1L2Pool *pool;
     L1L2MotionWorker *worker;
     L1L2Path *path;
@@ -60,10 +60,11 @@ static L1L2StabResult build(L1L2Stab *s)
         .model = cfg->motion_model,
         .rolling_shutter = cfg->rolling_shutter,
         .seed = cfg->seed,
+        .pixel_aspect = cfg->pixel_aspect,
         .log = &cfg->logger,
     };
     const L1L2PathConfig path = {
-        .width = cfg->width,
+        .width = cfg->width * cfg->pixel_aspect,
         .height = cfg->height,
         .frame_rate = cfg->frame_rate,
         .window = cfg->window,
@@ -94,6 +95,7 @@ static L1L2StabResult build(L1L2Stab *s)
         .capacity = cfg->window,
         .motions = l1l2_frame_queue_motions(&s->queue),
         .frames = l1l2_frame_queue_shutter_frames(&s->queue),
+        .pixel_aspect = cfg->pixel_aspect,
     };
     L1L2StabResult result = l1l2_motion_worker_create(&s->worker, &motion, s->pool);
     if (result == L1L2STAB_OK)
@@ -122,7 +124,7 @@ L1L2StabResult l1l2stab_create(L1L2Stab **out, const L1L2StabConfig *cfg)
     s->pool = l1l2_pool_create(resolved.threads);
     s->lambda = resolved.lambda;
     s->crop_ratio = resolved.crop_ratio;
-    s->diagonal_px = hypot(resolved.width, resolved.height);
+    s->diagonal_px = hypot(resolved.width * resolved.pixel_aspect, resolved.height);
     s->bypass.length = L1L2STAB_BYPASS_FRAMES;
     l1l2_config_output_size(&resolved, &s->out_width, &s->out_height);
     result = build(s);
@@ -357,12 +359,13 @@ L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque)
     return L1L2STAB_OK;
 }
 
-/* Output pixel to source pixel: B_t after the zoom that makes the crop window out of the output picture. */
+/* Output pixel to source pixel, in samples: B_t after the zoom that makes the crop window out of the output picture. */
 static L1L2Mat warp_map(const L1L2Stab *s, const L1L2Mat *B, double crop_ratio)
 {
     const bool fill = s->cfg.output_size == L1L2STAB_OUTPUT_SIZE_INPUT;
     const double zoom = fill ? crop_ratio : crop_ratio / s->cfg.crop_ratio;
-    return l1l2_mat_mul(l1l2_mat_rescale(*B, s->diagonal_px), l1l2_mat_diagonal(zoom, zoom));
+    const L1L2Mat shown = l1l2_mat_mul(l1l2_mat_rescale(*B, s->diagonal_px), l1l2_mat_diagonal(zoom, zoom));
+    return l1l2_mat_to_samples(shown, s->cfg.pixel_aspect);
 }
 
 /* Whether C is within the range that is accumulated: a million diagonals, a zoom of a million either way. */

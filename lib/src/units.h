@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Conversion between the library's unit, the frame's diagonal, and the caller's unit, the pixel. No other file converts
- * maps.
+ * maps. Both units are of the frame as it is shown: where pixels are not square, x is the sample's times the pixel
+ * aspect, and diagonal_px is the shown picture's.
  *
  * A reported motion that is given in another run must make the same path, bit for bit. A given motion must be reported
  * as it was given. Both conversions round, and several pixel values can share one value in diagonals. So a frame's

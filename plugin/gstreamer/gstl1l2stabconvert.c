@@ -9,6 +9,10 @@
  * this rate. */
 #define MAX_FRAME_RATE 1000.0
 
+/* The library's range. */
+#define MIN_PIXEL_ASPECT 0.1
+#define MAX_PIXEL_ASPECT 10.0
+
 static const struct
 {
   L1L2StabLogLevel ours;
@@ -79,6 +83,16 @@ chroma_site_from_video (GstVideoChromaSite site)
   return L1L2STAB_CHROMA_SITE_LEFT;
 }
 
+/* Nonsense in the caps must not stop the stream: it counts as square pixels. */
+static gdouble
+pixel_aspect_from_video (const GstVideoInfo * info)
+{
+  const gdouble aspect = (gdouble) GST_VIDEO_INFO_PAR_N (info)
+      / GST_VIDEO_INFO_PAR_D (info);
+
+  return aspect >= MIN_PIXEL_ASPECT && aspect <= MAX_PIXEL_ASPECT ? aspect : 1;
+}
+
 void
 gst_l1l2_stab_convert_config (L1L2StabConfig * config, const GstVideoInfo * info)
 {
@@ -87,6 +101,7 @@ gst_l1l2_stab_convert_config (L1L2StabConfig * config, const GstVideoInfo * info
   config->height = GST_VIDEO_INFO_HEIGHT (info);
   config->chroma_site =
       chroma_site_from_video (GST_VIDEO_INFO_CHROMA_SITE (info));
+  config->pixel_aspect = pixel_aspect_from_video (info);
   config->frame_rate = 0;
   if (GST_VIDEO_INFO_FPS_N (info) > 0) {
     gdouble rate;

@@ -100,6 +100,9 @@ START_TEST(every_field_out_of_range_is_refused_by_name)
     REFUSED(output_size, (L1L2StabOutputSize)2);
     REFUSED(analysis_size, 100);
     REFUSED(threads, 65);
+    REFUSED(pixel_aspect, 0.0);
+    REFUSED(pixel_aspect, 10.1);
+    REFUSED(pixel_aspect, NAN);
 }
 END_TEST
 

@@ -8,6 +8,9 @@
  *   Frames       t = 0, 1, 2, ... in the order of l1l2stab_push().
  *   Coordinates  pixels, origin at the frame's center, x right, y down. Pixel centers lie at half-integers: the
  *                frame is exactly [-W/2, W/2] x [-H/2, H/2].
+ *   Pixel aspect F, B, S, C and P, and given motions, are in square pixels of the picture as it is shown: there the
+ *                frame is pixel_aspect W wide and H high, since a roll is a rotation in that picture alone. Only
+ *                `warp` in L1L2StabInfo is in samples. With pixel_aspect 1 the two are the same.
  *   Matrices     3x3, row-major, act on column vectors (x, y, 1).
  *   Directions   F_t maps frame t to frame t-1; C_t = F_1 ... F_t (eq. 1); P_t = C_t B_t (eq. 2);
  *                B_t maps the crop window to the source frame: it is the inverse map that a warp wants.
@@ -233,6 +236,7 @@ typedef struct L1L2StabConfig {
     L1L2StabSolver solver;         /* default AUTO */
     L1L2StabMotionModel motion_model; /* default SIMILARITY */
     L1L2StabRollingShutter rolling_shutter; /* default MIXTURE */
+    double pixel_aspect;           /* a pixel's width by its height as it is shown, [0.1, 10], default 1 */
 } L1L2StabConfig;
 
 /* The path starts anew at this frame: nothing before it belongs to the same shot. */
@@ -299,7 +303,8 @@ typedef struct L1L2StabInfo {
     double C[9];         /* camera path, for display: accumulated from F, relative to the path's first frame. Always
                           * finite: beyond a million diagonals or a zoom of a million it starts again at this frame. */
     double P[9];         /* smoothed path C B, for display */
-    double warp[9];      /* output pixel to source pixel, origins at the centers: what was rendered */
+    double warp[9];      /* output pixel to source pixel, origins at the centers: what was rendered. In samples,
+                          * also where pixels are not square */
     double lambda;       /* value that this frame was pushed with */
     double crop_ratio;   /* value in effect for this frame; after a change it ramps to the new setting */
     int tracks;          /* points that were tracked into this frame and passed the backward check */

@@ -109,6 +109,15 @@ L1L2Mat l1l2_mat_rescale(L1L2Mat m, double factor)
     return m;
 }
 
+L1L2Mat l1l2_mat_to_samples(L1L2Mat m, double aspect)
+{
+    m.m[1] /= aspect;
+    m.m[2] /= aspect;
+    m.m[3] *= aspect;
+    m.m[6] *= aspect;
+    return m;
+}
+
 L1L2Mat l1l2_mat_mix(const L1L2Mat *a, const L1L2Mat *b, double weight)
 {
     L1L2Mat out;

@@ -3,8 +3,10 @@
  * Plane geometry: 3x3 maps on doubles. The conventions of the whole library live here.
  *
  *   Origin     the frame's center; x right, y down.
- *   Unit       inside the library: the frame's diagonal, so that lambda means the same at every resolution.
- *              At the public header: pixels. l1l2_mat_rescale() converts.
+ *   Unit       inside the library: the diagonal of the frame as it is shown, so that lambda means the same at every
+ *              resolution. At the public header: pixels. l1l2_mat_rescale() converts.
+ *   Aspect     where pixels are not square, x is that of the shown picture: the sample's, times a pixel's width by
+ *              its height. Only the warp is in samples.
  *   Pixels     centers at half-integers: the frame is exactly [-W/2, W/2] x [-H/2, H/2] px.
  *   Direction  F_t maps points of frame t to frame t-1; C_t = F_1 ... F_t (eq. 1); P_t = C_t B_t (eq. 2);
  *              B_t maps the crop window to the source frame.
@@ -61,6 +63,10 @@ bool l1l2_mat_is_identity(const L1L2Mat *m);
 
 /* The same map in a unit in which lengths are `factor` times as large: diagonal_px converts diagonals to pixels. */
 L1L2Mat l1l2_mat_rescale(L1L2Mat m, double factor);
+
+/* A map of the picture as it is shown, in square pixels, as the map of its samples: D^-1 m D with D = diag(aspect, 1),
+ * where aspect is a pixel's width by its height. Unchanged for aspect 1. */
+L1L2Mat l1l2_mat_to_samples(L1L2Mat m, double aspect);
 
 /* (1 - weight) a + weight b, element by element; exact at 0 and 1. Where a and b take a point into a convex set, so
  * does this: affine maps, and projective ones with m[8] = 1 and a positive denominator there. */

@@ -25,7 +25,8 @@ struct L1L2Motion {
     L1L2MotionConfig cfg;
     L1L2Vision *vision;
     int width, height;      /* of the downscaled picture */
-    double diagonal_px;     /* of the frame */
+    double pixel_aspect;    /* a pixel's width by its height */
+    double diagonal_px;     /* of the frame as it is shown */
     double half_w, half_h;  /* of the frame, in diagonals */
     double distance_px;     /* between points, in the downscaled picture */
     L1L2ShutterModel shape; /* of the rolling-shutter residual */
@@ -54,9 +55,12 @@ struct L1L2Motion {
 static void configure(L1L2Motion *m)
 {
     const L1L2MotionParameters *p = m->cfg.parameters;
-    const double pixel = 1.0 / hypot(m->width, m->height);
-    m->diagonal_px = hypot(m->cfg.width, m->cfg.height);
-    m->half_w = 0.5 * m->cfg.width / m->diagonal_px;
+    const double aspect = m->cfg.pixel_aspect > 0.0 ? m->cfg.pixel_aspect : 1.0;
+    /* Of the downscaled picture: the side of a square of a pixel's area. */
+    const double pixel = sqrt(aspect) / hypot(m->width * aspect, m->height);
+    m->pixel_aspect = aspect;
+    m->diagonal_px = hypot(m->cfg.width * aspect, m->cfg.height);
+    m->half_w = 0.5 * m->cfg.width * aspect / m->diagonal_px;
     m->half_h = 0.5 * m->cfg.height / m->diagonal_px;
     m->shape = (L1L2ShutterModel){m->cfg.rolling_shutter, m->half_w, m->half_h, NULL};
     m->weights = (L1L2TrackWeights){.parameters = p, .half_w = m->half_w, .half_h = m->half_h};
@@ -136,7 +140,8 @@ static void start_shot(L1L2Motion *m)
  * have different scales, since the downscaled picture's sides are rounded. */
 static L1L2Point to_diagonals(const L1L2Motion *m, L1L2Pixel p)
 {
-    return (L1L2Point){((p.x + 0.5) * m->cfg.width / m->width - 0.5 * m->cfg.width) / m->diagonal_px,
+    const double x = (p.x + 0.5) * m->cfg.width / m->width - 0.5 * m->cfg.width;
+    return (L1L2Point){x * m->pixel_aspect / m->diagonal_px,
                        ((p.y + 0.5) * m->cfg.height / m->height - 0.5 * m->cfg.height) / m->diagonal_px};
 }
 

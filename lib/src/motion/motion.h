@@ -7,7 +7,7 @@
  * track_weights.c prefers the background to subjects, ransac.c fits, and model_selection.c decides which model the
  * tracks support. shot_cut.c and shot_dissolve.c find where another shot begins.
  *
- * Points and F_t are in diagonals of the frame, with the origin at its center, x right and y down.
+ * Points and F_t are in diagonals of the frame as it is shown, with the origin at its center, x right and y down.
  */
 #ifndef L1L2_MOTION_MOTION_H
 #define L1L2_MOTION_MOTION_H
@@ -30,6 +30,7 @@ typedef struct L1L2MotionConfig {
     uint64_t seed;             /* of RANSAC */
     const L1L2StabLogger *log; /* must outlive the object */
     L1L2StabRollingShutter rolling_shutter; /* model of the residual that F_t leaves; NONE: it is not fitted */
+    double pixel_aspect;       /* a pixel's width by its height; 0: 1 */
     const L1L2MotionParameters *parameters; /* must outlive the object; NULL: l1l2_motion_defaults */
 } L1L2MotionConfig;
 

@@ -11,10 +11,10 @@ typedef struct Rows {
     double G[L1L2_PATH_CONSTRAINTS][L1L2_DIM], lo[L1L2_PATH_CONSTRAINTS], hi[L1L2_PATH_CONSTRAINTS];
 } Rows;
 
-L1L2PathCropWindow l1l2_path_crop_window(int width_px, int height_px, double ratio, int dim)
+L1L2PathCropWindow l1l2_path_crop_window(double width, double height, double ratio, int dim)
 {
-    const double diagonal_px = hypot(width_px, height_px);
-    return (L1L2PathCropWindow){width_px / (2.0 * diagonal_px), height_px / (2.0 * diagonal_px), ratio, dim};
+    const double diagonal = hypot(width, height);
+    return (L1L2PathCropWindow){width / (2.0 * diagonal), height / (2.0 * diagonal), ratio, dim};
 }
 
 int l1l2_path_constraint_count(int dim)

@@ -26,7 +26,7 @@ typedef struct L1L2PathCropWindow {
     int dim;               /* of the motion model: 2, 4 or 6 parameters, see geom.h */
 } L1L2PathCropWindow;
 
-L1L2PathCropWindow l1l2_path_crop_window(int width_px, int height_px, double ratio, int dim);
+L1L2PathCropWindow l1l2_path_crop_window(double width, double height, double ratio, int dim);
 
 /* Rows for a motion model of `dim` parameters. */
 int l1l2_path_constraint_count(int dim);

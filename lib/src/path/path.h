@@ -28,7 +28,7 @@
 typedef struct L1L2Path L1L2Path;
 
 typedef struct L1L2PathConfig {
-    int width, height;  /* pixels: only their ratio matters */
+    double width, height; /* of the frame as it is shown: only their ratio matters */
     double frame_rate;  /* frames a second; 0: 30 */
     double weights[3];  /* of eq. (3); 1, 1, 1 in eq. (5) */
     int window, overlap; /* N, K */

@@ -76,12 +76,14 @@ L1L2StabResult l1l2_shutter_filter_create(L1L2ShutterFilter **out, const L1L2Shu
     L1L2ShutterFilter *filter = l1l2_mem_new(1, sizeof *filter);
     if (!filter)
         return L1L2STAB_ERR_NOMEM;
-    const double diagonal_px = hypot(cfg->in_width, cfg->in_height);
     filter->cfg = *cfg;
+    filter->cfg.pixel_aspect = cfg->pixel_aspect > 0.0 ? cfg->pixel_aspect : 1.0;
+    const double shown_width = cfg->in_width * filter->cfg.pixel_aspect;
+    const double diagonal_px = hypot(shown_width, cfg->in_height);
     filter->parameters = l1l2_shutter_parameters_or_default(cfg->parameters);
     filter->model = (L1L2ShutterModel){
         .kind = cfg->model,
-        .half_w = 0.5 * cfg->in_width / diagonal_px,
+        .half_w = 0.5 * shown_width / diagonal_px,
         .half_h = 0.5 * cfg->in_height / diagonal_px,
         .parameters = cfg->parameters,
     };
@@ -291,7 +293,7 @@ const L1L2WarpMesh *l1l2_shutter_filter_mesh(L1L2ShutterFilter *filter, const L1
     for (int p = 0; p < L1L2_SHUTTER_SIZE; p++)
         residual.p[p] *= part;
     const double reach = l1l2_shutter_mesh_set(&filter->mesh, map, &filter->model, &residual,
-                                               filter->cfg.in_width, filter->cfg.in_height);
+                                               filter->cfg.in_width, filter->cfg.in_height, filter->cfg.pixel_aspect);
     if (!(reach > 0.0))
         return NULL;
     *reach_px = reach;

@@ -103,9 +103,9 @@ static bool inside(const L1L2WarpMesh *mesh, double half_w, double half_h)
 #endif
 
 double l1l2_shutter_mesh_set(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2ShutterModel *model,
-                            const L1L2ShutterResidual *residual, int width, int height)
+                            const L1L2ShutterResidual *residual, int width, int height, double pixel_aspect)
 {
-    const double diagonal_px = hypot(width, height);
+    const double diagonal_px = hypot(width * pixel_aspect, height); /* as it is shown */
     const double zone = l1l2_shutter_parameters_or_default(model->parameters)->compress_zone;
     Rows rows;
     tabulate(&rows, model, residual);
@@ -114,10 +114,10 @@ double l1l2_shutter_mesh_set(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2S
     l1l2_warp_mesh_set(mesh, map);
     const int count = mesh->columns * mesh->rows;
     for (int i = 0; i < count; i++) {
-        const L1L2Point from = {mesh->node[i].x / diagonal_px, mesh->node[i].y / diagonal_px};
+        const L1L2Point from = {mesh->node[i].x * pixel_aspect / diagonal_px, mesh->node[i].y / diagonal_px};
         const L1L2Point first = displacement(&rows, from);
         const L1L2Point d = displacement(&rows, (L1L2Point){from.x - first.x, from.y - first.y});
-        const L1L2Point to = {(from.x - d.x) * diagonal_px, (from.y - d.y) * diagonal_px};
+        const L1L2Point to = {(from.x - d.x) * diagonal_px / pixel_aspect, (from.y - d.y) * diagonal_px};
         if (!isfinite(to.x) || !isfinite(to.y))
             return -1.0;
         longest = fmax(longest, hypot(d.x, d.y) * diagonal_px);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Motion files of other tools: how frames find their lines, and which faults of a file are reported. */
+#include <math.h>
+
 #include "motion_fixture.h"
 
 /* Writes a file with pans by 1, 2, 3, ... pixels, with the times of the frames or without. */
@@ -73,6 +75,55 @@ GST_START_TEST (skipped_frames_and_reverse_playback_find_their_motion)
   fail_unless (next_motion (h, &x, &y) && x == -(9 + 10 + 11));
   fail_unless (next_motion (h, &x, &y) && x == -(6 + 7 + 8));
   stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+/* A roll, given in square pixels, is in samples what the caps' pixels make of it. */
+GST_START_TEST (the_pixel_aspect_ratio_of_the_caps_reaches_the_library)
+{
+  static const struct
+  {
+    const gchar *caps;
+    gdouble aspect;
+  } cases[] = {
+    {NOISE_CAPS, 1},
+    {NOISE_CAPS ", pixel-aspect-ratio=64/45", 64. / 45},
+    {NOISE_CAPS ", pixel-aspect-ratio=1/2", .5},
+    {NOISE_CAPS ", pixel-aspect-ratio=100/1", 1},       /* nonsense */
+  };
+  GString *text = g_string_new ("l1l2stab-motion 1\n");
+  guint i, c;
+
+  for (i = 0; i < N_FRAMES; i++)
+    g_string_append_printf (text, "- 0 given 1 0 0 1 %s 0 %s 1 0\n",
+        i % 2 ? "-0.02" : "0.02", i % 2 ? "0.02" : "-0.02");
+  write_file ("in", text->str);
+  g_string_free (text, TRUE);
+  for (c = 0; c < G_N_ELEMENTS (cases); c++) {
+    GstHarness *h = harness_new ("in", NULL);
+    gdouble turned = 0;
+
+    play (h);
+    gst_harness_set_src_caps_str (h, cases[c].caps);
+    for (i = 0; i < N_FRAMES; i++)
+      push_frame (h, i);
+    gst_harness_push_event (h, gst_event_new_eos ());
+    for (i = 0; i < N_FRAMES; i++) {
+      GstMessage *message = stab_harness_message (h, GST_MESSAGE_ELEMENT);
+      const gdouble a = cases[c].aspect;
+      gdouble warp[9];
+
+      stab_get_matrix (gst_message_get_structure (message), "warp", warp);
+      gst_message_unref (message);
+      fail_unless (fabs (warp[0] - warp[4]) < 1e-9);
+      fail_unless (fabs (warp[3] + a * a * warp[1]) < 1e-9,
+          "%s: %g, %g", cases[c].caps, warp[1], warp[3]);
+      turned = MAX (turned, fabs (warp[1]));
+    }
+    fail_unless (turned > 1e-3);
+    stab_harness_free (h);
+  }
 }
 
 GST_END_TEST;
@@ -298,6 +349,7 @@ motionin_suite (void)
 
   suite_add_tcase (s, tc);
   tcase_add_checked_fixture (tc, make_folder, remove_folder);
+  tcase_add_test (tc, the_pixel_aspect_ratio_of_the_caps_reaches_the_library);
   tcase_add_test (tc,
       skipped_frames_and_reverse_playback_find_their_motion);
   tcase_add_test (tc, frames_with_one_timestamp_take_its_lines_in_order);

@@ -233,7 +233,7 @@ static void run_clip(const Clip *clip, const Recording *recording, const L1L2Shu
     static L1L2Mat motions[RECORDS];
     static L1L2ShutterFrame rows[RECORDS];
     const L1L2ShutterFilterConfig cfg = {clip->model, WIDTH, HEIGHT, WIDTH, HEIGHT, window, parameters,
-                                         {motions, sizeof *motions, RECORDS}, {rows, sizeof *rows, RECORDS}};
+                                         {motions, sizeof *motions, RECORDS}, {rows, sizeof *rows, RECORDS}, 1.0};
     L1L2ShutterFilter *filter;
     if (l1l2_shutter_filter_create(&filter, &cfg) != L1L2STAB_OK)
         exit(EXIT_FAILURE);
@@ -402,7 +402,7 @@ static void filter_clip(const RealClip *clip, const L1L2ShutterParameters *param
     static L1L2Mat motions[RECORDS];
     static L1L2ShutterFrame rows[RECORDS];
     const L1L2ShutterFilterConfig cfg = {kind, clip->width, clip->height, clip->width, clip->height, WINDOW, parameters,
-                                         {motions, sizeof *motions, RECORDS}, {rows, sizeof *rows, RECORDS}};
+                                         {motions, sizeof *motions, RECORDS}, {rows, sizeof *rows, RECORDS}, 1.0};
     static L1L2ShutterGate gate;
     L1L2ShutterFilter *filter;
     if (l1l2_shutter_filter_create(&filter, &cfg) != L1L2STAB_OK)

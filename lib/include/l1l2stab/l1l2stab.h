@@ -239,7 +239,7 @@ typedef struct L1L2StabConfig {
     double pixel_aspect;           /* a pixel's width by its height as it is shown, [0.1, 10], default 1 */
 } L1L2StabConfig;
 
-/* The path starts anew at this frame: nothing before it belongs to the same shot. */
+/* A new path starts at this frame: no frame before it belongs to the same shot. */
 #define L1L2STAB_FRAME_DISCONT (1u << 0)
 
 /* A frame: to push(), the picture to stabilize; to pull(), the memory to render into. Clear it to zero and set what is
@@ -374,8 +374,8 @@ L1L2STAB_API L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void 
  * lacks a plane, or the frame was pushed without pixels): the frame remains queued. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info);
 
-/* Ends the input: what is held can be pulled until EOS, and reset() starts anew. Always OK unless s is NULL; calling it
- * again does nothing. */
+/* Ends the input: held frames can be pulled until EOS, and reset() makes push() possible again. Always OK unless s is
+ * NULL; calling it again does nothing. */
 L1L2STAB_API L1L2StabResult l1l2stab_finish(L1L2Stab *s);
 
 /* For a source that is late: the `frames` oldest held frames (all, if fewer are held) can be pulled from now on. Their

@@ -108,7 +108,7 @@ void l1l2_image_scale_set_levels(L1L2AreaScaler *s, L1L2Levels levels)
     const double level = ldexp((double)s->whole * s->y.total, -s->shift);
     const double unit = level * (levels.high - levels.low) / 256.0;
     const double offset = cut ? 0.0 : level * levels.low;
-    /* The margin makes exact halves round up in spite of float's own rounding. */
+    /* The margin makes exact halves round up despite the rounding of float. */
     const double margin = stretched ? fmin(0.25, unit / 256.0) : 0.25;
     s->scale = (float)(1.0 / unit);
     s->half = (float)(0.5 * unit + margin - offset);

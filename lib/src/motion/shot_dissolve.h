@@ -26,7 +26,7 @@ typedef struct L1L2ShotDissolve {
 void l1l2_motion_dissolve_start(L1L2ShotDissolve *d, const L1L2Thumbnail *thumbnail);
 
 /* Takes the next frame and its motion F, from frame t to t-1, with (half_w, half_h) half of the frame's size in F's
- * unit. True if the frame belongs to another shot than those before; the caller then starts anew with it. */
+ * unit. True if the frame belongs to another shot than those before; the caller then starts a shot with it. */
 bool l1l2_motion_dissolve_push(L1L2ShotDissolve *d, const L1L2Thumbnail *thumbnail, const L1L2Mat *F, double half_w,
                                  double half_h);
 

@@ -20,6 +20,7 @@
 typedef struct L1L2QueuedFrame {
     L1L2StabFrame frame;         /* the caller's */
     double lambda, crop_ratio;   /* as they were set when the frame was pushed */
+    double step;                 /* time since the frame before, nominal frames (frame_time.h) */
     L1L2StabMotionSource source; /* of path.F */
     int tracks, inliers;
     double quality;

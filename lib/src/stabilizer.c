@@ -21,6 +21,7 @@
 #include "config.h"
 #include "frame_check.h"
 #include "frame_queue.h"
+#include "frame_time.h"
 #include "info.h"
 #include "motion/worker.h"
 #include "path/path.h"
@@ -39,6 +40,7 @@ struct L1L2Stab {
     L1L2ShutterFilter *filter;
     L1L2Warp *warp;
     L1L2FrameQueue queue;
+    L1L2FrameTime time;        /* of the frame pushed last */
     bool finished;
     int hurried;               /* number of the oldest held frames that are ready although the window is not full */
     L1L2StabResult error;      /* of measuring: the first that l1l2stab_take_error() has not yet returned */
@@ -158,6 +160,7 @@ void l1l2stab_reset(L1L2Stab *s)
         return;
     l1l2_motion_worker_reset(s->worker);
     l1l2_frame_queue_reset(&s->queue);
+    s->time = l1l2_frame_time_start(s->cfg.frame_rate);
     l1l2_path_reset(s->path);
     l1l2_shutter_filter_reset(s->filter);
     s->finished = false;
@@ -182,6 +185,7 @@ static void extend_path(L1L2Stab *s, const L1L2MotionResult *motion, const doubl
         .starts_path = motion->model == L1L2STAB_MOTION_SOURCE_NONE,
         .lambda = record->lambda,
         .crop_ratio = record->crop_ratio,
+        .step = record->step,
     };
     memcpy(record->F_px, F_px, sizeof record->F_px);
     record->source = motion->model;
@@ -298,6 +302,7 @@ L1L2StabResult l1l2stab_push(L1L2Stab *s, const L1L2StabFrame *in)
     record->frame = frame;
     record->lambda = s->lambda;
     record->crop_ratio = s->crop_ratio;
+    record->step = l1l2_frame_time_step(&s->time, frame.pts, starts_path);
     if (frame.motion)
         extend_path_as_given(s, frame.motion, starts_path);
     else

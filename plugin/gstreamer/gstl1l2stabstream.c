@@ -194,7 +194,8 @@ gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer,
   }
 
   gst_l1l2_stab_convert_planes (&frame, &held->pixels);
-  frame.pts = (gint64) GST_BUFFER_PTS (held->buffer);
+  frame.pts = GST_BUFFER_PTS_IS_VALID (held->buffer) ?
+      (gint64) GST_BUFFER_PTS (held->buffer) : L1L2STAB_NO_PTS;
   frame.opaque = held;
   frame.release = held_frame_free;
   held->arrival = arrival;

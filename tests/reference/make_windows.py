@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Writes windows.txt: windows, and their optimum as window_reference.py finds it.
 
-usage: make_windows.py > windows.txt      (needs numpy, scipy and clarabel)
+usage: make_windows.py > windows.txt                (needs numpy, scipy and clarabel)
+       make_windows.py --uneven > windows_uneven.txt  windows whose frames are not evenly spaced in time
 
 Windows are synthetic walks, and stretches of the camera paths in motion/*.txt, which the library measured on real video
 (one frame a line: a b x y of F_t, unit the diagonal), for the similarity; then a few for the other motion models.
@@ -11,8 +12,9 @@ of [a -b x; b a y] (4), or a b c d x y of [a b x; c d y] (6):
 
     window DIM N HISTORY CROP WIDTH HEIGHT NAME
     past P...                     HISTORY lines, newest last: P of the frames before the window, in its reference
+    step H                        only of uneven windows; 2 + N lines: the steps to frame -2, -1, 0 ... N-1
     F P...                        N lines; the first is not used
-    lambda L OBJECTIVE            8 times, each followed by
+    lambda L OBJECTIVE            8 times (4 of uneven windows), each followed by
     P T P...                      P at every 16th frame and the last; left out where lambda is 0 (not unique)
 """
 import itertools
@@ -100,6 +102,45 @@ def other_windows():
             yield Affine, f'affine-{name}', part, past_of(3, rng, Affine), 0.9, width, height
 
 
+def uneven_steps(kind, n, rng):
+    """Steps to frame -2 ... n - 1: one frame in five missing, the whole range at random, or a rate that changes."""
+    if kind == 0:
+        return np.where(np.arange(n + 2) % 4 == 1, 2.0, 1.0)
+    if kind == 1:
+        return np.exp(rng.uniform(np.log(0.25), np.log(4), n + 2))
+    return np.where(np.arange(n + 2) < n / 2, 0.25, rng.uniform(0.8, 1.2, n + 2))
+
+
+def uneven_windows():
+    rng = np.random.default_rng(2027)
+    for model, lengths in ((Similarity, (FULL, 90, 90, 40, 40, 12, 3, 1)), (Affine, (40, 40, 12)),
+                           (Translation, (FULL, 40, 12))):
+        for i, n in enumerate(lengths):
+            motions = synthetic(n, rng, *SHAKES[i % 4], model)
+            past = past_of((3, 0, 3, 2, 1, 3, 3, 3)[i], rng, model)
+            steps = np.round(uneven_steps(i % 3, n, rng), 6)
+            yield model, f'uneven-{model.__name__.lower()}-{i}', motions, past, steps
+
+
+def print_uneven():
+    for model, name, motions, past, steps in uneven_windows():
+        motions, past = np.round(motions, 9), [np.round(p, 9) for p in past]
+        print('window', model.dim, len(motions), len(past), 0.9, 640, 360, name)
+        for p in past:
+            print('past', numbers(p))
+        for h in steps:
+            print('step', numbers([h]))
+        for f in motions:
+            print('F', numbers(f))
+        times = np.concatenate([[0], np.cumsum(steps)])[3 - len(past):]
+        for lam in LAMBDAS[1:5]:
+            objective, smooth = reference.solve(motions, past, lam, 0.9, 640, 360, model, times)
+            print('lambda', lam, f'{objective:.13g}')
+            for t in sorted(set(range(0, len(motions), 16)) | {len(motions) - 1}):
+                print('P', t, numbers(smooth[t]))
+        print(name, file=sys.stderr, flush=True)
+
+
 def numbers(values):
     return ' '.join(f'{v:.12g}' for v in values)
 
@@ -121,4 +162,4 @@ def main():
 
 
 if __name__ == '__main__':
-    main()
+    print_uneven() if '--uneven' in sys.argv[1:] else main()

@@ -4,13 +4,30 @@
 It shares nothing with the library. Its variables are the update transforms B_t (eq. 6) instead of the paths P_t, its
 solver is Clarabel (HiGHS where lambda is 0), and its matrices are general sparse ones. It knows each motion model.
 Unit: the frame's diagonal. The linear part has half the weight in both norms.
+Frames may be at any times: `times` are those of the past and of the window's frames, in nominal frames.
 It needs numpy, scipy and clarabel. The library's build and tests do not need it.
 """
+import math
+
 import numpy as np
 import scipy.optimize
 import scipy.sparse as sp
 
-DIFFERENCES = {1: [1, -1], 2: [1, -2, 1], 3: [1, -3, 3, -1]}
+ORDERS = (1, 2, 3)
+
+
+def difference(times):
+    """Weights on the newest to the oldest of k + 1 frames: the k-th derivative, k! times the divided difference, times
+    the part of time that it stands for, a k-th of the span. 1 -1; 1 -2 1; 1 -3 3 -1 where the times are even."""
+    k = len(times) - 1
+    divided = [1 / np.prod([a - b for j, b in enumerate(times) if j != i]) for i, a in enumerate(times)]
+    return [math.factorial(k) * w * (times[-1] - times[0]) / k for w in divided][::-1]
+
+
+def shares(times, past):
+    """Part of time of each frame of the window. The steps before the path and behind the window count as one frame."""
+    steps = np.concatenate([[1], np.diff(times), [1]])[past:]
+    return (steps[:-1] + steps[1:]) / 2
 
 
 class Similarity:
@@ -91,7 +108,7 @@ def limits(crop, half_w, half_h, model):
     return rows
 
 
-def assemble(motions, past, crop, width, height, model):
+def assemble(motions, past, crop, width, height, model, times):
     """Rows of the problem in p = parameters of B_t: differences (d + D p), L2 part (l + L p), and G p <= h.
     past: parameters of P of up to three frames before the window, newest last, in the window's reference."""
     n, diagonal, dim = len(motions), np.hypot(width, height), model.dim
@@ -109,11 +126,12 @@ def assemble(motions, past, crop, width, height, model):
 
     terms = sp.csr_matrix(model.terms)
     rows, constants = [], []
-    for order, signs in DIFFERENCES.items():
+    for order in ORDERS:
         for t in range(n):
             if t - order < -len(past):
                 continue
             parts = [smooth(t - m) for m in range(order + 1)]
+            signs = difference(times[len(past) + t - order:len(past) + t + 1])
             rows.append(terms @ sum(s * q[0] for s, q in zip(signs, parts)))
             constants.append(model.terms @ sum(s * q[1] for s, q in zip(signs, parts)))
     D = sp.vstack(rows).tocsr() if rows else sp.csr_matrix((0, dim * n))
@@ -128,9 +146,13 @@ def assemble(motions, past, crop, width, height, model):
     return D, d, L, l, G, h, path
 
 
-def solve(motions, past, lam, crop, width, height, model=Similarity):
+def solve(motions, past, lam, crop, width, height, model=Similarity, times=None):
     """Objective, parameters of P_t (n x dim) in the window's reference."""
-    D, d, L, l, G, h, path = assemble(motions, past, crop, width, height, model)
+    if times is None:
+        times = np.arange(len(past) + len(motions))
+    D, d, L, l, G, h, path = assemble(motions, past, crop, width, height, model, times)
+    share = np.repeat(np.sqrt(shares(times, len(past))), model.dim)
+    L, l = sp.diags(share) @ L, share * l
     n, terms = model.dim * len(motions), D.shape[0]
     eye = sp.identity(terms)
     A = sp.vstack([sp.hstack([D, -eye]), sp.hstack([-D, -eye]), sp.hstack([G, sp.csr_matrix((G.shape[0], terms))])])

@@ -242,6 +242,9 @@ typedef struct L1L2StabConfig {
 /* A new path starts at this frame: no frame before it belongs to the same shot. */
 #define L1L2STAB_FRAME_DISCONT (1u << 0)
 
+/* The pts of a frame that has no timestamp. */
+#define L1L2STAB_NO_PTS INT64_MIN
+
 /* A frame: to push(), the picture to stabilize; to pull(), the memory to render into. Clear it to zero and set what is
  * needed. Fields are only ever added at the end. */
 typedef struct L1L2StabFrame {
@@ -250,7 +253,13 @@ typedef struct L1L2StabFrame {
     size_t struct_size;
     uint8_t *data[4];    /* first row of each plane; push() only reads, pull() only writes; unused ones are ignored */
     ptrdiff_t stride[4]; /* bytes from a row to the next, may be negative */
-    int64_t pts;         /* the caller's; pull() returns it with the same frame */
+    /* The frame's time in nanoseconds, or L1L2STAB_NO_PTS; pull() returns it with the same frame. Where the frames are
+     * not evenly spaced, the path is smooth in time. A step that is within 2 ms of 1 / frame_rate, shorter than 1 ms,
+     * or without two timestamps counts as one frame, and so does every step where frame_rate is 0. Any other counts by
+     * its length, but as 1/4 frame at least and as 4 frames at most. So numbers that are no times, such as 0, 1, 2,
+     * have no effect. A step back counts as one frame; where timestamps keep falling (reverse playback), by its
+     * length. */
+    int64_t pts;
     void *opaque;        /* the caller's; pull() returns it with the same frame */
     /* push() only: called exactly once, by the pull, reset or free that no longer needs the pixels. Never called if
      * push() did not return OK. Must not call the library with this instance. May be NULL. */

@@ -183,7 +183,7 @@ L1L2_PATH_INLINE void add_gradients(const L1L2PathInteriorPoint *ipm, const L1L2
             for (int j = 0; j < dim; j++, pair++) {
                 const double v = term_value(pair);
                 for (int m = 0; m <= order && m <= t; m++)
-                    rhs[dim * (t - m) + j] += v * l1l2_path_difference_coefficients[order - 1][m];
+                    rhs[dim * (t - m) + j] += v * p->difference[t][order - 1][m];
             }
     pair = ipm->crop;
     for (int t = 0; t < p->count; t++)
@@ -230,7 +230,7 @@ L1L2_PATH_INLINE void assemble(L1L2PathInteriorPoint *ipm, const L1L2PathProblem
             for (int j = 0; j < dim; j++, pair++) {
                 const double d0 = pair->y[0] / pair->s[0], d1 = pair->y[1] / pair->s[1];
                 const double weight = 4.0 * d0 * d1 / (d0 + d1);
-                const double *c = l1l2_path_difference_coefficients[order - 1];
+                const double *c = p->difference[t][order - 1];
                 for (int a = 0; a <= order && a <= t; a++)     /* frame t - a, the earlier one, is the column */
                     for (int b = 0; b <= a; b++)
                         system[(dim * (t - a) + j) * band + dim * (a - b)] += weight * c[a] * c[b];
@@ -296,7 +296,7 @@ L1L2_PATH_INLINE void step_forms(L1L2PathInteriorPoint *ipm, const L1L2PathProbl
             for (int j = 0; j < dim; j++, pair++) {
                 pair->dv = 0.0;
                 for (int m = 0; m <= order && m <= t; m++)
-                    pair->dv += l1l2_path_difference_coefficients[order - 1][m] * step[dim * (t - m) + j];
+                    pair->dv += p->difference[t][order - 1][m] * step[dim * (t - m) + j];
             }
     pair = ipm->crop;
     for (int t = 0; t < p->count; t++)

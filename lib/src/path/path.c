@@ -78,6 +78,21 @@ static int blended(const L1L2Path *path, const L1L2PathWindow *step)
     return path->cfg.join == L1L2STAB_JOIN_BLEND ? step->shared : 0;
 }
 
+/* The steps of a frame and of the two before it. Those before the path's start count as one frame. */
+static void steps_of(const L1L2Path *path, int64_t frame, double step[L1L2_PATH_HISTORY])
+{
+    for (int back = 0; back < L1L2_PATH_HISTORY; back++)
+        step[back] = frame - back > path->start ? frame_at(path, frame - back)->step : 1.0;
+}
+
+/* The time that frame t of a window stands for, nominal frames. The step behind the window's end counts as one frame,
+ * because that frame may not have come yet. */
+static double share_of_time(const L1L2Path *path, const L1L2PathWindow *step, int t)
+{
+    const int64_t frame = path->start + step->first + t;
+    return 0.5 * (frame_at(path, frame)->step + (t + 1 < step->count ? frame_at(path, frame + 1)->step : 1.0));
+}
+
 /* eq. (1), relative to the window's first frame: C of the frames of the window, and P of the three before it. */
 static void describe_window(L1L2Path *path, const L1L2PathWindow *step)
 {
@@ -91,7 +106,10 @@ static void describe_window(L1L2Path *path, const L1L2PathWindow *step)
         const L1L2PathCropWindow crop = crop_of(path, frame);
         if (t > 0)
             camera = l1l2_mat_mul(camera, frame->F);
-        l1l2_path_problem_set(p, t, &camera, frame->lambda * 30.0 / rate, &crop);
+        double steps[L1L2_PATH_HISTORY];
+        steps_of(path, first + t, steps);
+        l1l2_path_problem_set(p, t, &camera, frame->lambda * 30.0 / rate * share_of_time(path, step, t), &crop);
+        l1l2_path_problem_set_steps(p, t, steps);
     }
     p->history = 0;
     if (blended(path, step) > 0)
@@ -116,14 +134,16 @@ static void hold_course(L1L2Path *path, const L1L2PathWindow *step)
     L1L2Mat B = step->first > 0 ? frame_at(path, first - 1)->B : l1l2_mat_identity();
     double speed_x = 0.0, speed_y = 0.0;
     if (step->first > 0)
-        speed_x = frame_at(path, first - 1)->S.m[2], speed_y = frame_at(path, first - 1)->S.m[5];
+        speed_x = frame_at(path, first - 1)->S.m[2] / frame_at(path, first - 1)->step,
+        speed_y = frame_at(path, first - 1)->S.m[5] / frame_at(path, first - 1)->step;
     for (int t = 0; t < step->count; t++) {
         if (step->first + t > 0) {
             const L1L2PathFrame *frame = frame_at(path, first + t);
             const L1L2PathCropWindow crop = crop_of(path, frame);
             L1L2Mat inverse; /* P_t = P_{t-1} S, so B_t = F_t^-1 B_{t-1} S */
             l1l2_mat_inverse(frame->F, &inverse);
-            B = l1l2_mat_mul(l1l2_mat_mul(inverse, B), l1l2_mat_translation(speed_x, speed_y));
+            const L1L2Mat smooth = l1l2_mat_translation(frame->step * speed_x, frame->step * speed_y);
+            B = l1l2_mat_mul(l1l2_mat_mul(inverse, B), smooth);
             B = l1l2_path_constraint_shrink(&crop, &B);
         }
         speed_x *= fade, speed_y *= fade;
@@ -242,6 +262,7 @@ void l1l2_path_push(L1L2Path *path, const L1L2PathInput *input)
         .F = starts_path ? l1l2_mat_identity() : usable_motion(path, input->F),
         .lambda = input->lambda,
         .crop_ratio = path->crop_ratio,
+        .step = starts_path || input->step == 0.0 ? 1.0 : input->step,
         .path_index = (uint64_t)(path->pushed - path->start),
     };
     path->pushed++;

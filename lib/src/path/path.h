@@ -2,6 +2,9 @@
 /*
  * Algorithm 1, steps 2 and 3, over a stream of any length: inter-frame motions in, update transforms out.
  *
+ * Time is counted in nominal frames. Where the frames are not evenly spaced, each is pushed with its step, and the path
+ * is smooth in time (problem.h).
+ *
  * Numbers only, no pixels. Unit: the frame's diagonal. All maps are of one motion model: with translations the picture
  * is moved, never turned or zoomed. A path is the frames from one cut to the next; windows, joins and ends are those of
  * window_schedule.h. C_t is taken relative to each window's first frame, so numbers stay near 1 however long the
@@ -47,6 +50,7 @@ typedef struct L1L2PathFrame {
     uint64_t path_index; /* frames since the path's start */
     double lambda;       /* as it was when the frame was pushed */
     double crop_ratio;   /* in effect for this frame: after a change it ramps to the new setting */
+    double step;         /* time since the frame before, nominal frames; 1 at a path's first frame */
     bool early;          /* decided by an early window, with a shorter look-ahead */
     bool fallback;       /* no solver converged: the path is feasible and continuous, but not the optimum */
     L1L2PathSolverReport report; /* of the frame's window */
@@ -60,6 +64,8 @@ typedef struct L1L2PathInput {
     double lambda;       /* of eq. (4) at 30 frames/s */
     double crop_ratio;   /* wanted. The one in effect changes by at most L1L2_CROP_STEP a frame: a slower change is
                           * followed exactly, a jump becomes a zoom. A path that starts has it at once */
+    double step;         /* time since the frame before, nominal frames, > 0 and finite; 0: one frame. Not used where a
+                          * path starts */
 } L1L2PathInput;
 
 #define L1L2_CROP_STEP 0.005

@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "common/mem.h"
 
@@ -19,14 +20,18 @@ L1L2PathProblem *l1l2_path_problem_create(int capacity, int dim)
     p->rows = l1l2_path_constraint_count(dim);
     p->weight[0] = p->weight[1] = p->weight[2] = 1.0;
     p->camera = l1l2_mem_new(n, sizeof *p->camera);
+    p->difference = l1l2_mem_new(n, sizeof *p->difference);
     p->lambda = l1l2_mem_new(n, sizeof *p->lambda);
     p->G = l1l2_mem_new(n, sizeof *p->G);
     p->lo = l1l2_mem_new(n, sizeof *p->lo);
     p->hi = l1l2_mem_new(n, sizeof *p->hi);
-    if (p->camera && p->lambda && p->G && p->lo && p->hi)
-        return p;
-    l1l2_path_problem_free(p);
-    return NULL;
+    if (!p->camera || !p->difference || !p->lambda || !p->G || !p->lo || !p->hi) {
+        l1l2_path_problem_free(p);
+        return NULL;
+    }
+    for (int t = 0; t < capacity; t++)
+        memcpy(p->difference[t], l1l2_path_difference_coefficients, sizeof p->difference[t]);
+    return p;
 }
 
 void l1l2_path_problem_free(L1L2PathProblem *p)
@@ -34,6 +39,7 @@ void l1l2_path_problem_free(L1L2PathProblem *p)
     if (!p)
         return;
     l1l2_mem_free(p->camera);
+    l1l2_mem_free(p->difference);
     l1l2_mem_free(p->lambda);
     l1l2_mem_free(p->G);
     l1l2_mem_free(p->lo);
@@ -50,11 +56,27 @@ void l1l2_path_problem_set(L1L2PathProblem *p, int t, const L1L2Mat *camera, dou
     l1l2_path_constraint_rows(crop, camera, p->G[t], p->lo[t], p->hi[t]);
 }
 
+void l1l2_path_problem_set_steps(L1L2PathProblem *p, int t, const double step[L1L2_PATH_HISTORY])
+{
+    const double u[3] = {1.0 / step[0], 1.0 / step[1], 1.0 / step[2]};
+    const double s[2] = {2.0 / (step[0] + step[1]), 2.0 / (step[1] + step[2])};
+    double(*row)[L1L2_PATH_HISTORY + 1] = p->difference[t];
+    row[0][0] = 1.0;
+    row[0][1] = -1.0;
+    row[1][0] = u[0];
+    row[1][1] = -(u[0] + u[1]);
+    row[1][2] = u[1];
+    row[2][0] = s[0] * u[0];
+    row[2][1] = -s[0] * (u[0] + u[1]) - s[1] * u[1];
+    row[2][2] = s[0] * u[1] + s[1] * (u[1] + u[2]);
+    row[2][3] = -s[1] * u[2];
+}
+
 double l1l2_path_difference(const L1L2PathProblem *p, const double (*q)[L1L2_DIM], int order, int t, int j)
 {
     double sum = 0.0;
     for (int m = 0; m <= order; m++)
-        sum += l1l2_path_difference_coefficients[order - 1][m] *
+        sum += p->difference[t][order - 1][m] *
                (t - m >= 0 ? q[t - m][j] : p->past[L1L2_PATH_HISTORY + t - m][j]);
     return sum;
 }

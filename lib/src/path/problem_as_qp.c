@@ -71,7 +71,7 @@ static void fill_q_column(const L1L2PathProblem *p, L1L2PathQp *qp, int t, int j
             const int i = t + m - first;
             if (i < 0 || t + m >= p->count)
                 continue;
-            const double value = term_scale[order - 1] * l1l2_path_difference_coefficients[order - 1][m];
+            const double value = term_scale[order - 1] * p->difference[t + m][order - 1][m];
             put(qp, l1l2_path_qp_row_term(p, order, i, j, 0), value);
             put(qp, l1l2_path_qp_row_term(p, order, i, j, 1), -value);
         }
@@ -87,7 +87,7 @@ static void fill_term(const L1L2PathProblem *p, L1L2PathQp *qp, int order, int i
     const int row = l1l2_path_qp_row_term(p, order, i, j, 0);
     double constant = 0.0;
     for (int m = t + 1; m <= order; m++)
-        constant += l1l2_path_difference_coefficients[order - 1][m] * p->past[L1L2_PATH_HISTORY + t - m][j];
+        constant += p->difference[t][order - 1][m] * p->past[L1L2_PATH_HISTORY + t - m][j];
     put(qp, row, -1.0);
     put(qp, row + 1, -1.0);
     qp->lower[row] = qp->lower[row + 1] = -L1L2_PATH_QP_INFINITY;

@@ -18,6 +18,7 @@ typedef struct Run {
     int frames;
     L1L2Mat F[MAX_FRAMES];
     bool starts[MAX_FRAMES];
+    double step[MAX_FRAMES]; /* 0: one frame */
     int hurry[MAX_FRAMES]; /* how many of the held frames are hurried after frame t was pushed */
     L1L2PathFrame out[MAX_FRAMES]; /* the path's rows: frame t is in row t */
 } Run;
@@ -56,7 +57,12 @@ static inline L1L2Path *new_path(const Setup *setup, Run *r)
 
 static inline void push(L1L2Path *path, const Setup *setup, const L1L2Mat *F, bool starts_path)
 {
-    l1l2_path_push(path, &(L1L2PathInput){F, starts_path, setup->lambda, setup->crop_ratio});
+    l1l2_path_push(path, &(L1L2PathInput){F, starts_path, setup->lambda, setup->crop_ratio, 0.0});
+}
+
+static inline void push_frame(L1L2Path *path, const Setup *setup, const Run *r, int t)
+{
+    l1l2_path_push(path, &(L1L2PathInput){&r->F[t], r->starts[t], setup->lambda, setup->crop_ratio, r->step[t]});
 }
 
 /* Whether frame t of the path was next, and decided. */
@@ -73,7 +79,7 @@ static inline void run(const Setup *setup, Run *r)
     L1L2Path *path = new_path(setup, r);
     int pulled = 0;
     for (int t = 0; t < r->frames; t++) {
-        push(path, setup, &r->F[t], r->starts[t]);
+        push_frame(path, setup, r, t);
         if (t - pulled + 1 == setup->window)
             ck_assert_msg(pull(path, r, pulled++), "frame %d was not decided in time", pulled - 1);
         if (r->hurry[t] > 0)

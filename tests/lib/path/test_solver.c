@@ -14,6 +14,7 @@ typedef struct Window {
     char name[64];
     int dim, count, history; /* dim: of the motion model, and of its maps' parameters */
     double crop, past[3][L1L2_DIM], motion[MAX_COUNT][L1L2_DIM];
+    double step[2 + MAX_COUNT]; /* to frame -2, -1, 0, ... */
     int width, height;
 } Window;
 
@@ -42,8 +43,17 @@ static void describe(const Window *w, double lambda, L1L2PathProblem *p)
     for (int t = 0; t < w->count; t++) {
         if (t > 0)
             camera = l1l2_mat_mul(camera, mat(w->dim, w->motion[t]));
-        l1l2_path_problem_set(p, t, &camera, lambda, &crop);
+        const double *h = &w->step[2 + t];
+        const double before = t > 0 || w->history > 0 ? h[0] : 1.0, after = t + 1 < w->count ? h[1] : 1.0;
+        l1l2_path_problem_set(p, t, &camera, 0.5 * lambda * (before + after), &crop);
+        l1l2_path_problem_set_steps(p, t, (double[]){h[0], h[-1], h[-2]});
     }
+}
+
+static void space_evenly(Window *w)
+{
+    for (int i = 0; i < 2 + MAX_COUNT; i++)
+        w->step[i] = 1.0;
 }
 
 static bool read_map(FILE *file, int dim, double v[L1L2_DIM])
@@ -65,8 +75,17 @@ static bool read_window(FILE *file, Window *w)
     ck_assert_int_le(w->count, MAX_COUNT);
     for (int i = 0; i < w->history; i++)
         ck_assert(fscanf(file, "%15s", word) == 1 && strcmp(word, "past") == 0 && read_map(file, w->dim, w->past[i]));
-    for (int t = 0; t < w->count; t++)
-        ck_assert(fscanf(file, "%15s", word) == 1 && strcmp(word, "F") == 0 && read_map(file, w->dim, w->motion[t]));
+    space_evenly(w);
+    ck_assert_int_eq(fscanf(file, "%15s", word), 1);
+    for (int i = 0; strcmp(word, "step") == 0; i++) {
+        ck_assert_int_lt(i, 2 + w->count);
+        ck_assert_int_eq(fscanf(file, "%lf %15s", &w->step[i], word), 2);
+    }
+    for (int t = 0; t < w->count; t++) {
+        if (t > 0)
+            ck_assert_int_eq(fscanf(file, "%15s", word), 1);
+        ck_assert(strcmp(word, "F") == 0 && read_map(file, w->dim, w->motion[t]));
+    }
     return true;
 }
 
@@ -79,9 +98,11 @@ static double corner_distance_px(const Window *w, const double q[L1L2_DIM], cons
            l1l2_mat_corner_distance(&found, expected, w->crop * crop.half_w, w->crop * crop.half_h);
 }
 
-static void against_the_reference(L1L2StabSolver choice, double relative, double corner_px)
+/* least: the windows of translations, similarities and affine maps that the file must have. */
+static void against_the_reference(const char *path, L1L2StabSolver choice, int lambdas, const int least[3],
+                                  double relative, double corner_px)
 {
-    FILE *file = fopen(REFERENCE_WINDOWS, "r");
+    FILE *file = fopen(path, "r");
     ck_assert_ptr_nonnull(file);
     L1L2PathProblem *p = l1l2_path_problem_create(MAX_COUNT, L1L2_DIM);
     L1L2PathSolver *solver[3];
@@ -91,7 +112,7 @@ static void against_the_reference(L1L2StabSolver choice, double relative, double
     Window w;
     int windows[3] = {0}, at_first_check = 0, checked = 0;
     for (; read_window(file, &w); windows[w.dim / 2 - 1]++)
-        for (int i = 0; i < 8; i++) {
+        for (int i = 0; i < lambdas; i++) {
             double lambda, objective, map[L1L2_DIM];
             int t;
             ck_assert_int_eq(fscanf(file, " lambda %lf %lf", &lambda, &objective), 2);
@@ -113,10 +134,10 @@ static void against_the_reference(L1L2StabSolver choice, double relative, double
             at_first_check += report.osqp_iterations == 1;
         }
     fclose(file);
-    printf("windows of translations, similarities, affine maps: %d, %d, %d, x 8 lambdas; OSQP accepted at its first "
-           "test: %d of %d\n", windows[0], windows[1], windows[2], at_first_check, checked);
-    ck_assert(windows[0] >= 5 && windows[1] >= 40 && windows[2] >= 10);
-    if (choice == L1L2STAB_SOLVER_CHECKED)
+    printf("windows of translations, similarities, affine maps: %d, %d, %d, x %d lambdas; OSQP accepted at its first "
+           "test: %d of %d\n", windows[0], windows[1], windows[2], lambdas, at_first_check, checked);
+    ck_assert(windows[0] >= least[0] && windows[1] >= least[1] && windows[2] >= least[2]);
+    if (choice == L1L2STAB_SOLVER_CHECKED && strcmp(path, REFERENCE_WINDOWS) == 0)
         ck_assert_int_ge(100 * at_first_check, 95 * checked);
     for (int i = 0; i < 3; i++)
         l1l2_path_solver_free(solver[i]);
@@ -125,13 +146,19 @@ static void against_the_reference(L1L2StabSolver choice, double relative, double
 
 START_TEST(the_checked_predictor_finds_the_reference_optimum)
 {
-    against_the_reference(L1L2STAB_SOLVER_CHECKED, 1e-7, 0.01);
+    against_the_reference(REFERENCE_WINDOWS, L1L2STAB_SOLVER_CHECKED, 8, (int[]){5, 40, 10}, 1e-7, 0.01);
 }
 END_TEST
 
 START_TEST(the_predictor_alone_finds_the_reference_optimum)
 {
-    against_the_reference(L1L2STAB_SOLVER_PREDICTOR, 1e-7, 0.01);
+    against_the_reference(REFERENCE_WINDOWS, L1L2STAB_SOLVER_PREDICTOR, 8, (int[]){5, 40, 10}, 1e-7, 0.01);
+}
+END_TEST
+
+START_TEST(the_checked_predictor_finds_the_reference_optimum_of_uneven_steps)
+{
+    against_the_reference(REFERENCE_WINDOWS_UNEVEN, L1L2STAB_SOLVER_CHECKED, 4, (int[]){3, 8, 3}, 1e-7, 0.01);
 }
 END_TEST
 
@@ -140,6 +167,7 @@ static void random_walk(Window *w, int dim, uint64_t seed, int count, int histor
     static const double still[3][L1L2_DIM] = {{0, 0}, {1, 0, 0, 0}, {1, 0, 0, 1, 0, 0}};
     L1L2Rng rng = l1l2_rng_seeded(seed);
     *w = (Window){.dim = dim, .count = count, .history = history, .crop = 0.8, .width = 640, .height = 360};
+    space_evenly(w);
     for (int t = 0; t < count; t++)
         for (int j = 0; j < dim; j++)
             w->motion[t][j] = still[dim / 2 - 1][j] + shake * (l1l2_rng_next(&rng) / 2147483648.0 - 1.0);
@@ -168,7 +196,7 @@ static void check_kkt(const L1L2PathProblem *p, const L1L2PathPoint *point)
                 ck_assert_near(y[0] + y[1], p->weight[order - 1], 1e-9);
                 ck_assert_near((y[0] - y[1]) * d, p->weight[order - 1] * fabs(d), 1e-8); /* a subgradient of |d| */
                 for (int m = 0; m <= order && m <= t; m++)
-                    force[t - m][j] += (y[0] - y[1]) * l1l2_path_difference_coefficients[order - 1][m];
+                    force[t - m][j] += (y[0] - y[1]) * p->difference[t][order - 1][m];
             }
     for (int t = 0; t < p->count; t++)
         for (int r = 0; r < p->rows; r++) {
@@ -199,6 +227,29 @@ START_TEST(the_predictor_meets_the_conditions_of_an_optimum)
         const L1L2PathInteriorPointReport report = l1l2_path_interior_point_solve(ipm, p, &point);
         ck_assert_msg(report.converged, "%d parameters, round %d: bound %g after %d iterations", dim, round,
                       report.bound, report.iterations);
+        check_kkt(p, &point);
+    }
+    l1l2_path_interior_point_free(ipm);
+    l1l2_path_problem_free(p);
+}
+END_TEST
+
+START_TEST(the_predictor_meets_the_conditions_of_an_optimum_of_uneven_steps)
+{
+    L1L2PathProblem *p = l1l2_path_problem_create(MAX_COUNT, L1L2_DIM);
+    L1L2PathInteriorPoint *ipm = l1l2_path_interior_point_create(MAX_COUNT, L1L2_DIM);
+    L1L2PathPoint point;
+    Window w;
+    for (int i = 0; i < 60; i++) {
+        const int counts[] = {1, 2, 3, 4, 7, 30, 150}, dim = 2 + 2 * (i / 20);
+        L1L2Rng rng = l1l2_rng_seeded((uint64_t)i);
+        random_walk(&w, dim, (uint64_t)i, counts[i % 7], i % 4, i % 2 ? 0.05 : 0.005);
+        for (int t = 0; t < 2 + w.count; t++)
+            w.step[t] = pow(4.0, l1l2_rng_next(&rng) / 2147483648.0 - 1.0);
+        describe(&w, i % 3 ? 0.5 : 0.01, p);
+        const L1L2PathInteriorPointReport report = l1l2_path_interior_point_solve(ipm, p, &point);
+        ck_assert_msg(report.converged, "%d parameters, round %d: bound %g after %d iterations", dim, i, report.bound,
+                      report.iterations);
         check_kkt(p, &point);
     }
     l1l2_path_interior_point_free(ipm);
@@ -305,6 +356,8 @@ int main(void)
     tcase_add_test(tcase, the_checked_predictor_finds_the_reference_optimum);
     tcase_add_test(tcase, the_predictor_alone_finds_the_reference_optimum);
     tcase_add_test(tcase, the_predictor_meets_the_conditions_of_an_optimum);
+    tcase_add_test(tcase, the_predictor_meets_the_conditions_of_an_optimum_of_uneven_steps);
+    tcase_add_test(tcase, the_checked_predictor_finds_the_reference_optimum_of_uneven_steps);
     tcase_add_test(tcase, osqp_alone_comes_near_the_optimum);
     tcase_add_test(tcase, the_same_window_gives_the_same_bits);
     tcase_add_test(tcase, a_window_does_not_depend_on_how_the_window_before_it_ended);

@@ -60,7 +60,7 @@ static void smooth(FILE *file, double ratio, Shake *before, Shake *after)
                           .model = L1L2STAB_MOTION_MODEL_SIMILARITY, .frames = {rows, sizeof *rows, ROWS}};
     L1L2Path *path;
     rewind(file);
-    if (fscanf(file, "# %d %d", &cfg.width, &cfg.height) != 2 || l1l2_path_create(&path, &cfg) != L1L2STAB_OK)
+    if (fscanf(file, "# %lf %lf", &cfg.width, &cfg.height) != 2 || l1l2_path_create(&path, &cfg) != L1L2STAB_OK)
         exit(EXIT_FAILURE);
     for (double a, b, x, y; fscanf(file, "%lf %lf %lf %lf", &a, &b, &x, &y) == 4;) {
         const L1L2Mat F = l1l2_mat_similarity(a, b, x, y);

@@ -53,7 +53,7 @@ parse_double (const gchar * text, gdouble * value)
 static gboolean
 parse_model (const gchar * text, L1L2StabMotionSource * model)
 {
-  for (*model = L1L2STAB_MOTION_SOURCE_NONE; *model <= L1L2STAB_MOTION_SOURCE_AFFINE;
+  for (*model = L1L2STAB_MOTION_SOURCE_NONE; *model <= L1L2STAB_MOTION_SOURCE_ALIGNMENT;
       (*model)++) {
     if (g_str_equal (text, gst_l1l2_stab_report_model_name (*model)))
       return TRUE;

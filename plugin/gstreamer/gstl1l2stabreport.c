@@ -103,6 +103,8 @@ gst_l1l2_stab_report_model_name (L1L2StabMotionSource model)
       return "given";
     case L1L2STAB_MOTION_SOURCE_AFFINE:
       return "affine";
+    case L1L2STAB_MOTION_SOURCE_ALIGNMENT:
+      return "alignment";
   }
   return "unknown";
 }

@@ -281,7 +281,8 @@ typedef enum L1L2StabMotionSource {
     L1L2STAB_MOTION_SOURCE_GIVEN = 3,       /* from the caller: L1L2StabFrame.motion */
     L1L2STAB_MOTION_SOURCE_TRANSLATION = 4, /* measured; too few points for more parameters */
     L1L2STAB_MOTION_SOURCE_SIMILARITY = 5,  /* measured */
-    L1L2STAB_MOTION_SOURCE_AFFINE = 6       /* measured */
+    L1L2STAB_MOTION_SOURCE_AFFINE = 6,      /* measured */
+    L1L2STAB_MOTION_SOURCE_ALIGNMENT = 7    /* measured from whole pictures, where the tracks did not yield a motion */
 } L1L2StabMotionSource;
 
 #define L1L2STAB_INFO_PATH_START (1u << 0)    /* first frame of a path */

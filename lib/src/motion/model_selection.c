@@ -325,6 +325,7 @@ L1L2SelectedModel l1l2_motion_model_select(L1L2ModelSelection *s, const L1L2Trac
     selected.quality = find_quality(s, w, tracks, &c, &ambiguous);
     s->agreement = reselected ? selected.quality : fmin(selected.quality, s->agreement);
     selected.quality = s->agreement;
+    selected.ambiguous = ambiguous;
     if (ambiguous)
         return selected;
     selected.source = source_of(c.model);

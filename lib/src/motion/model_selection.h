@@ -41,6 +41,7 @@ typedef struct L1L2SelectedModel {
     L1L2Mat F;
     int inliers;
     double quality;              /* [0, 1] */
+    bool ambiguous;              /* source NONE, but F is an acceptable motion: another one has about equal weight */
 } L1L2SelectedModel;
 
 /* Forgets the motion and the model: a path starts. */

@@ -13,6 +13,7 @@
 #include "motion/shot_dissolve.h"
 #include "motion/static_overlay.h"
 #include "motion/vision.h"
+#include "motion/whole_picture.h"
 #include "rolling_shutter/camera_gate.h"
 #include "rolling_shutter/fit.h"
 
@@ -41,6 +42,7 @@ struct L1L2Motion {
     bool inlier[MAX_POINTS], core[MAX_POINTS];      /* of the selected model, and to which it was fitted */
     int since_selection;                            /* frames, of corners */
 
+    bool had_detail;          /* the previous picture had detail */
     bool has_previous;        /* a picture was pushed since the last reset */
     L1L2Rng rng;
     L1L2Thumbnail thumbnail;  /* of the current picture */
@@ -49,6 +51,7 @@ struct L1L2Motion {
     L1L2StaticOverlay overlay;
     L1L2ShotCut cut;
     L1L2ShotDissolve dissolve;
+    L1L2WholePicture *whole;  /* NULL: pictures too small */
     L1L2ShutterGate gate;     /* which of the residuals follow the camera's motion */
 };
 
@@ -100,6 +103,11 @@ L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
     }
     l1l2_vision_size(m->vision, &m->width, &m->height);
     configure(m);
+    if (!l1l2_motion_whole_picture_create(&m->whole, m->width, m->height, m->pixel_aspect * cfg->width,
+                                          cfg->height)) {
+        l1l2_motion_free(m);
+        return L1L2STAB_ERR_NOMEM;
+    }
     l1l2_motion_reset(m);
     *out = m;
     return L1L2STAB_OK;
@@ -110,12 +118,14 @@ void l1l2_motion_free(L1L2Motion *m)
     if (!m)
         return;
     l1l2_vision_free(m->vision);
+    l1l2_motion_whole_picture_free(m->whole);
     l1l2_mem_free(m);
 }
 
 void l1l2_motion_reset(L1L2Motion *m)
 {
     l1l2_vision_reset(m->vision);
+    l1l2_motion_whole_picture_reset(m->whole);
     m->has_previous = false;
     m->rng = l1l2_rng_seeded(m->cfg.seed);
     l1l2_motion_overlay_reset(&m->overlay);
@@ -289,6 +299,50 @@ static void measure_residual(L1L2Motion *m, const L1L2TrackSet *tracks, L1L2Sele
     out->residual = fit.step;
 }
 
+/* ---- Where the tracks do not yield the motion: whole pictures ---- */
+
+/* F was found from whole pictures. The tracks that agree with it follow the camera. */
+static L1L2SelectedModel adopt_alignment(L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2Mat *F, double quality)
+{
+    int inliers = 0;
+    for (int i = 0; i < tracks->count; i++) {
+        const L1L2Point p = l1l2_mat_apply(F, tracks->pairs[i].from), to = tracks->pairs[i].to;
+        m->inlier[i] = m->core[i] = hypot(p.x - to.x, p.y - to.y) <= tracks->threshold;
+        inliers += m->inlier[i];
+    }
+    L1L2SelectedModel selected = l1l2_motion_model_adopt(&m->selection, F, inliers, quality);
+    selected.source = L1L2STAB_MOTION_SOURCE_ALIGNMENT;
+    return selected;
+}
+
+/* How much each cell of the alignment counts: by the part of its tracks that followed the camera lately. */
+static void cell_trust(const L1L2Motion *m, float trust[L1L2_ALIGN_CELLS])
+{
+    const double least = m->cfg.parameters->min_cell_weight;
+    for (int i = 0; i < L1L2_ALIGN_CELLS; i++) {
+        const double x = (i % L1L2_ALIGN_CELLS_X + 0.5) / L1L2_ALIGN_CELLS_X;
+        const double y = ((double)(i / L1L2_ALIGN_CELLS_X) + 0.5) / L1L2_ALIGN_CELLS_Y;
+        const L1L2Point center = {(2.0 * x - 1.0) * m->half_w, (2.0 * y - 1.0) * m->half_h};
+        trust[i] = (float)(least + (1.0 - least) * l1l2_motion_weights_agreement(&m->weights, center));
+    }
+}
+
+/* Measures the motion of a frame whose tracks did not yield it from whole pictures, if both have detail. Of two motions
+ * with about equal weight the one of the tracks is tried as a first guess. */
+static void align_pictures(L1L2Motion *m, const L1L2TrackSet *tracks, L1L2SelectedModel *selected)
+{
+    float trust[L1L2_ALIGN_CELLS];
+    L1L2Alignment a;
+    if (!m->had_detail || !l1l2_image_thumbnail_has_detail(&m->thumbnail))
+        return;
+    cell_trust(m, trust);
+    const L1L2Mat *guess = selected->ambiguous ? &selected->F : NULL;
+    const bool accepted = l1l2_motion_whole_picture_align(m->whole, &m->selection.last, guess, trust, &a);
+    if (accepted && fabs(log(a.evidence.gain)) <= m->cfg.parameters->align_max_gain)
+        *selected = adopt_alignment(m, tracks, &a.F, fmin(a.evidence.correlation * a.evidence.agreement,
+                                                          m->cfg.parameters->align_max_quality));
+}
+
 /* ---- One frame ---- */
 
 /* Drops all tracks and predicts the motion. */
@@ -317,11 +371,14 @@ static bool measure(L1L2Motion *m, L1L2MotionResult *out)
     L1L2SelectedModel selected =
         l1l2_motion_model_select(&m->selection, &m->weights, &tracks, reselected, m->inlier, m->core);
     measure_residual(m, &tracks, &selected, out);
-    const bool measured = selected.source != L1L2STAB_MOTION_SOURCE_NONE;
-    if (l1l2_motion_cut_push(&m->cut, &m->thumbnail, measured)) {
+    if (l1l2_motion_cut_push(&m->cut, &m->thumbnail, selected.source != L1L2STAB_MOTION_SOURCE_NONE)) {
         cut_to(m, "a cut");
         return false;
     }
+    if (selected.source == L1L2STAB_MOTION_SOURCE_NONE)
+        align_pictures(m, &tracks, &selected);
+    m->had_detail = l1l2_image_thumbnail_has_detail(&m->thumbnail);
+    const bool measured = selected.source != L1L2STAB_MOTION_SOURCE_NONE;
     if (measured)
         learn(m, &selected.F);
     else
@@ -330,7 +387,7 @@ static bool measure(L1L2Motion *m, L1L2MotionResult *out)
         cut_to(m, "a dissolve");
         return false;
     }
-    if (out->has_residual && measured)
+    if (out->has_residual && selected.source != L1L2STAB_MOTION_SOURCE_ALIGNMENT && measured)
         l1l2_shutter_gate_push(&m->gate, &m->shape, &selected.F, &out->residual);
     else
         l1l2_shutter_gate_break(&m->gate);
@@ -350,6 +407,10 @@ static const L1L2MotionResult path_start = {
 static L1L2StabResult advance_picture(L1L2Motion *m, const uint8_t *data, ptrdiff_t stride)
 {
     const L1L2StabResult result = l1l2_vision_advance(m->vision, data, stride);
+    L1L2GrayPicture previous, current;
+    previous.data = l1l2_vision_picture(m->vision, true, &previous.stride);
+    current.data = l1l2_vision_picture(m->vision, false, &current.stride);
+    l1l2_motion_whole_picture_advance(m->whole, previous, current);
     return result == L1L2STAB_OK ? l1l2_vision_thumbnail(m->vision, &m->thumbnail) : result;
 }
 
@@ -372,6 +433,7 @@ L1L2StabResult l1l2_motion_push(L1L2Motion *m, const uint8_t *data, ptrdiff_t st
     m->has_previous = true;
     const int64_t tracked_ns = l1l2_clock_ns();
     if (first) {
+        m->had_detail = l1l2_image_thumbnail_has_detail(&m->thumbnail);
         start_shot(m);
         out->model = starts_path ? L1L2STAB_MOTION_SOURCE_NONE : L1L2STAB_MOTION_SOURCE_IDENTITY;
     } else if (!measure(m, out)) {

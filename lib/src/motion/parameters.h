@@ -90,6 +90,11 @@
         "test_model_selection: two motions of equal weight have less; sweep: same") \
     ROW(full_coverage, 0.3, "of the cells", "with inliers in them the frame counts as covered", \
         "MediaPipe's 30 %") \
+    /* Whole pictures: motion.c, whole_picture.c */ \
+    ROW(align_max_quality, 0.4, "[0, 1]", "of a motion from whole pictures", \
+        "test_motion_movers: a subject on 60 % must not be followed with confidence") \
+    ROW(align_max_gain, 0.4, "log ratio", "of contrast between two whole pictures: else one is covered", \
+        "test_never_worse: lens covered 2 s") \
     /* Noise: model_selection.c */ \
     ROW(negligible_error, 0.035, "threshold", "standard errors below it do not matter", \
         "200 good tracks have 0.01") \

@@ -58,6 +58,10 @@ void l1l2_vision_size(const L1L2Vision *v, int *width, int *height);
  * current one, and its pyramid is built. */
 L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t stride);
 
+/* A downscaled picture: data and stride of its rows, bytes. previous: the picture before the current one, in the
+ * current one's brightness where that changed much. Valid until the next l1l2_vision_advance(). */
+const uint8_t *l1l2_vision_picture(const L1L2Vision *v, bool previous, ptrdiff_t *stride);
+
 /* The current picture as a thumbnail, downscaled by area averaging. */
 L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail);
 

@@ -367,6 +367,13 @@ L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t
     });
 }
 
+const uint8_t *l1l2_vision_picture(const L1L2Vision *v, bool previous, ptrdiff_t *stride)
+{
+    const L1L2Pyramid *p = previous ? v->previous_pyramid.get() : v->pyramid.get();
+    *stride = p->level[0].stride;
+    return p->grey[0];
+}
+
 L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail)
 {
     return guard(v->cfg.log, [&] {

@@ -76,13 +76,13 @@ static bool blurred(const Bench *b, int t)
 
 static void run(Bench *b, Tally *tally)
 {
-    static uint8_t grey[WIDTH * HEIGHT];
+    static uint8_t gray[WIDTH * HEIGHT];
     L1L2Mat last = l1l2_mat_identity();
     int sharp = 0; /* the last sharp frame */
     for (int t = 0; t < FRAMES; t++) {
-        synth_hard_render(b->clip, t, grey, WIDTH);
+        synth_hard_render(b->clip, t, gray, WIDTH);
         const double start = cpu_ms();
-        l1l2_image_float_pyramid_build(b->picture[t], grey, WIDTH);
+        l1l2_image_float_pyramid_build(b->picture[t], gray, WIDTH);
         tally->prepare_ms += cpu_ms() - start;
         if (t == 0)
             continue;

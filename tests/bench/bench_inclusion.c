@@ -122,7 +122,7 @@ int main(int argc, char **argv)
 {
     static const char *const names[MODELS] = {"none", "homography", "mixture"};
     if (argc < 3) {
-        printf("usage: bench_inclusion WIDTH HEIGHT [FRAMES_PER_SECOND] < rows of grey bytes\n");
+        printf("usage: bench_inclusion WIDTH HEIGHT [FRAMES_PER_SECOND] < rows of gray bytes\n");
         return EXIT_SUCCESS;
     }
     Clip clip = {.width = atoi(argv[1]), .height = atoi(argv[2]), .frame_rate = argc > 3 ? atof(argv[3]) : 30.0};

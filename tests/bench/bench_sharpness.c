@@ -29,12 +29,12 @@ static double gradient_energy(const uint8_t *data, ptrdiff_t stride, int width, 
     return sum / ((width - 2.0 * MARGIN) * (height - 2.0 * MARGIN));
 }
 
-typedef struct Grey {
+typedef struct Gray {
     int width, height;
     uint8_t *data;
-} Grey;
+} Gray;
 
-static Grey scene(void)
+static Gray scene(void)
 {
     SynthConfig cfg = synth_defaults();
     cfg.width = 1280, cfg.height = 720;
@@ -42,24 +42,24 @@ static Grey scene(void)
     SynthPicture picture = synth_picture_new(L1L2STAB_FORMAT_GRAY8, cfg.width, cfg.height);
     synth_render(synth, 0, L1L2STAB_FORMAT_GRAY8, picture.data, picture.stride);
     synth_free(synth);
-    return (Grey){cfg.width, cfg.height, picture.data[0]};
+    return (Gray){cfg.width, cfg.height, picture.data[0]};
 }
 
-static Grey read_pgm(const char *name)
+static Gray read_pgm(const char *name)
 {
-    Grey grey = {0, 0, NULL};
+    Gray gray = {0, 0, NULL};
     FILE *file = fopen(name, "rb");
-    if (!file || fscanf(file, "P5 %d %d 255", &grey.width, &grey.height) != 2 || fgetc(file) == EOF ||
-        !(grey.data = malloc((size_t)grey.width * (size_t)grey.height)) ||
-        fread(grey.data, (size_t)grey.width, (size_t)grey.height, file) != (size_t)grey.height) {
+    if (!file || fscanf(file, "P5 %d %d 255", &gray.width, &gray.height) != 2 || fgetc(file) == EOF ||
+        !(gray.data = malloc((size_t)gray.width * (size_t)gray.height)) ||
+        fread(gray.data, (size_t)gray.width, (size_t)gray.height, file) != (size_t)gray.height) {
         fprintf(stderr, "%s: not a PGM of 8 bits\n", name);
         exit(EXIT_FAILURE);
     }
     fclose(file);
-    return grey;
+    return gray;
 }
 
-static void bench(const Grey *src, L1L2StabInterpolation interpolation, bool zoomed, bool diagonal)
+static void bench(const Gray *src, L1L2StabInterpolation interpolation, bool zoomed, bool diagonal)
 {
     static const char *const names[] = {"bilinear", "bicubic", "lanczos"};
     const int width = zoomed ? src->width : (int)(CROP * src->width);
@@ -95,7 +95,7 @@ int main(int argc, char **argv)
 {
     printf("gradient energy of a frame, %% of the source's, over a pan of %.2f px per frame\n", PAN_PX);
     for (int i = 1; i < argc || i == 1; i++) {
-        const Grey src = argc > 1 ? read_pgm(argv[i]) : scene();
+        const Gray src = argc > 1 ? read_pgm(argv[i]) : scene();
         printf("%s, %dx%d\n", argc > 1 ? argv[i] : "the test scene", src.width, src.height);
         for (int zoomed = 1; zoomed >= 0; zoomed--)
             for (int k = 0; k < 3; k++)

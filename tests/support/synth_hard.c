@@ -87,7 +87,7 @@ static bool is_jerk(const SynthHardConfig *cfg, int t)
     return cfg->jerks > 0 && phase >= 0 && (cfg->jerk_every > 0 ? phase % cfg->jerk_every : phase) < cfg->jerks;
 }
 
-/* Where all jerks up to a time have brought the camera. The jerk of frame k is centred on the middle of its exposure;
+/* Where all jerks up to a time have brought the camera. The jerk of frame k is centered on the middle of its exposure;
  * the part of it that falls into the exposure is `jerk_px`. */
 static void add_jerks(const SynthHardConfig *cfg, double time, double *x, double *y)
 {
@@ -164,7 +164,7 @@ static void draw_floor_row(const SynthHard *s, const double M[9], double x, doub
                  0.12f * (out[i] - 128.0f);
 }
 
-/* A spot of light: its centre in the frame moves on a curve of its own. */
+/* A spot of light: its center in the frame moves on a curve of its own. */
 static float light_at(const SynthHard *s, double time, double x, double y)
 {
     double light = 0.0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Synthetic clips in which corners fail: sudden jerks that blur single frames, low contrast, thermal cameras, repeated
- * texture, rain and snow, dense overlays, two motions, fast zoom, steps of the exposure, a dark stage. Grey, 8 bits.
+ * texture, rain and snow, dense overlays, two motions, fast zoom, steps of the exposure, a dark stage. Gray, 8 bits.
  *
  * The camera and its conventions are synth.h's. A frame's exposure is the mean of at least 16 instants where the camera
  * moves by more than a pixel meanwhile, and its true motion is that of the middle of its exposure. Deterministic: the
@@ -47,10 +47,10 @@ typedef struct SynthHardConfig {
                              * direction of its own; jerk_every > 0: and again after so many frames */
     int jerk_every;
     double jerk_px;         /* length of the blur, px */
-    double contrast;        /* of the scene, 1 as it is, about 45 grey levels of deviation; 0 counts as 1 */
-    double levels;          /* thermal: the scene is squeezed into so many grey levels; 0: not */
-    double pattern;         /* sigma of a noise that is the same in every frame, grey levels */
-    double noise;           /* sigma of the noise of each frame, grey levels */
+    double contrast;        /* of the scene, 1 as it is, about 45 gray levels of deviation; 0 counts as 1 */
+    double levels;          /* thermal: the scene is squeezed into so many gray levels; 0: not */
+    double pattern;         /* sigma of a noise that is the same in every frame, gray levels */
+    double noise;           /* sigma of the noise of each frame, gray levels */
     int step_at;            /* from this frame on the gain is `step_gain`; 0: never */
     double step_gain;
 } SynthHardConfig;
@@ -70,7 +70,7 @@ void synth_hard_camera(const SynthHard *s, int t, double M[9]);
 /* The motion from frame t to frame t - back: M_{t-back}^-1 M_t. */
 void synth_hard_motion(const SynthHard *s, int t, int back, double F[9]);
 
-/* How far the picture's centre moves over the exposure of frame t, px. */
+/* How far the picture's center moves over the exposure of frame t, px. */
 void synth_hard_blur(const SynthHard *s, int t, double *x, double *y);
 
 /* Frame t; stride in bytes. */

@@ -74,7 +74,7 @@ static int covered(const Axis *axis, int i, int j)
 
 /* Sets the weights across. A weight is the difference of two running sums of exact weights, each rounded: so the
  * weights of every output have the same sum, which is returned. */
-static int set_weights(L1L2AreaScaler *s, const double *grey)
+static int set_weights(L1L2AreaScaler *s, const double *gray)
 {
     const int whole = s->components == 1 ? s->x.total : WEIGHT_MAX, block = L1L2_AREA_SCALE_BLOCK;
     for (int x = 0; x < s->x.to; x++) {
@@ -83,7 +83,7 @@ static int set_weights(L1L2AreaScaler *s, const double *grey)
         int so_far = 0;
         s->first[x] = first * s->components;
         for (int k = 0; k < s->taps; k++) {
-            const double part = s->components == 1 ? 1.0 : grey[k % s->components];
+            const double part = s->components == 1 ? 1.0 : gray[k % s->components];
             exact += part * covered(&s->x, x, first + k / s->components) * whole / s->x.total;
             const int weight = (int)lround(exact) - so_far;
             so_far += weight;
@@ -142,7 +142,7 @@ L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, in
         l1l2_image_scale_free(s);
         return NULL;
     }
-    s->whole = set_weights(s, format->grey);
+    s->whole = set_weights(s, format->gray);
     l1l2_image_scale_set_levels(s, l1l2_image_levels_full(format));
     return s;
 }

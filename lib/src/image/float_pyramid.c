@@ -51,11 +51,11 @@ void l1l2_image_float_pyramid_free(L1L2FloatPyramid *p)
     l1l2_mem_free(p);
 }
 
-/* The sums of 2 x 2 bytes, in quarters of a grey level. */
-static void halve_bytes(const uint8_t *grey, ptrdiff_t stride, int width, int height, uint16_t *out)
+/* The sums of 2 x 2 bytes, in quarters of a gray level. */
+static void halve_bytes(const uint8_t *gray, ptrdiff_t stride, int width, int height, uint16_t *out)
 {
     for (int y = 0; y < height; y++) {
-        const uint8_t *restrict a = grey + 2 * y * stride, *restrict b = a + stride;
+        const uint8_t *restrict a = gray + 2 * y * stride, *restrict b = a + stride;
         uint16_t *restrict to = out + (ptrdiff_t)y * width;
         for (int x = 0; x < width; x++)
             to[x] = (uint16_t)(a[2 * x] + a[2 * x + 1] + b[2 * x] + b[2 * x + 1]);
@@ -74,17 +74,17 @@ static void halve_again(uint16_t *sums, int from_width, int width, int height)
 }
 
 /* The picture at level 0's size, not yet blurred. */
-static void shrink(L1L2FloatPyramid *p, const uint8_t *grey, ptrdiff_t stride)
+static void shrink(L1L2FloatPyramid *p, const uint8_t *gray, ptrdiff_t stride)
 {
     const L1L2FloatLevel *to = p->level;
     if (to->step == 1) {
         for (int y = 0; y < to->height; y++)
             for (int x = 0; x < to->width; x++)
-                p->row[(ptrdiff_t)y * to->width + x] = (float)grey[y * stride + x];
+                p->row[(ptrdiff_t)y * to->width + x] = (float)gray[y * stride + x];
         return;
     }
     int w = p->width / 2, h = p->height / 2;
-    halve_bytes(grey, stride, w, h, p->halved);
+    halve_bytes(gray, stride, w, h, p->halved);
     for (int step = 2; step < to->step; step *= 2) {
         halve_again(p->halved, w, w / 2, h / 2);
         w /= 2, h /= 2;
@@ -137,10 +137,10 @@ static void halve_level(const L1L2FloatLevel *from, const L1L2FloatLevel *to)
     }
 }
 
-void l1l2_image_float_pyramid_build(L1L2FloatPyramid *p, const uint8_t *grey, ptrdiff_t stride)
+void l1l2_image_float_pyramid_build(L1L2FloatPyramid *p, const uint8_t *gray, ptrdiff_t stride)
 {
     const L1L2FloatLevel *first = p->level;
-    shrink(p, grey, stride);
+    shrink(p, gray, stride);
     blur_columns(p->row, first->sample, first->width, first->height);
     blur_rows(first->sample, p->row, first->width, first->height); /* the rows are not needed any more */
     for (int i = 1; i < p->levels; i++)

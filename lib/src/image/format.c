@@ -19,9 +19,9 @@
 #define HALF(components) {components, 1, 1}
 #define QUARTER_WIDE(components) {components, 2, 0}
 
-/* Number, name, depth, shift, grey, planes. */
-#define ROW(id, name, depth, shift, grey, planes, ...)                                                                \
-    {L1L2STAB_FORMAT_##id, name, depth, shift, grey, planes, {__VA_ARGS__}}
+/* Number, name, depth, shift, gray, planes. */
+#define ROW(id, name, depth, shift, gray, planes, ...)                                                                \
+    {L1L2STAB_FORMAT_##id, name, depth, shift, gray, planes, {__VA_ARGS__}}
 
 static const L1L2FormatInfo formats[] = {
     ROW(GRAY8, "GRAY8", 8, 0, FIRST, 1, FULL(1)),

@@ -16,7 +16,7 @@ typedef struct L1L2FormatInfo {
     const char *name;       /* as GStreamer calls it */
     int depth;              /* bits of a component: 8 in one byte; 9..16 in two bytes, the low byte first */
     int shift;              /* unused low bits, all zero: 16 - depth if a component is at the top of its two bytes */
-    double grey[4];         /* weights of a pixel's components in the gray picture that is tracked, sum 1 */
+    double gray[4];         /* weights of a pixel's components in the gray picture that is tracked, sum 1 */
     int planes;             /* 1..4 */
     struct {
         int components;     /* interleaved: 1..4. Packed 4:2:2 has 4: the luma of two pixels and their chroma */

@@ -21,18 +21,18 @@ bool l1l2_image_levels_equal(L1L2Levels a, L1L2Levels b)
 }
 
 /* The gray level of the pixel at p, whose components have two bytes. */
-static uint16_t grey_of(const L1L2FormatInfo *format, const uint8_t *p)
+static uint16_t gray_of(const L1L2FormatInfo *format, const uint8_t *p)
 {
     const int components = l1l2_image_format_pixel_components(format);
-    double grey = 0.0;
+    double gray = 0.0;
     for (int k = 0; k < components; k++) {
         uint16_t level;
         memcpy(&level, p + 2 * k, sizeof level);
         if (components == 1)
             return level;
-        grey += format->grey[k] * level;
+        gray += format->gray[k] * level;
     }
-    return (uint16_t)(grey + 0.5);
+    return (uint16_t)(gray + 0.5);
 }
 
 /* The level that `rank` of the samples are below: by their high bytes, then by the low bytes of those that share it. */
@@ -59,7 +59,7 @@ static L1L2Levels percentiles(const L1L2FormatInfo *format, const uint8_t *data,
     for (int i = 0; i < SAMPLES; i++) {
         const int x = (2 * (i % COLUMNS) + 1) * width / (2 * COLUMNS);
         const int y = (2 * (i / COLUMNS) + 1) * height / (2 * ROWS);
-        sample[i] = grey_of(format, data + stride * y + (ptrdiff_t)x * pixel);
+        sample[i] = gray_of(format, data + stride * y + (ptrdiff_t)x * pixel);
     }
     return (L1L2Levels){ranked(sample, TAIL), ranked(sample, SAMPLES - 1 - TAIL)};
 }

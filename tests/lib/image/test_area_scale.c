@@ -64,11 +64,11 @@ static uint32_t sample(const Trial *t, int x, int y, int component)
 }
 
 /* A pixel's gray level, in units of 8 bits. */
-static double grey(const Trial *t, int x, int y)
+static double gray(const Trial *t, int x, int y)
 {
     double sum = 0.0;
     for (int c = 0; c < l1l2_image_format_pixel_components(t->format); c++)
-        sum += (l1l2_image_format_pixel_components(t->format) == 1 ? 1.0 : t->format->grey[c]) * sample(t, x, y, c);
+        sum += (l1l2_image_format_pixel_components(t->format) == 1 ? 1.0 : t->format->gray[c]) * sample(t, x, y, c);
     return ldexp(sum, 8 - t->format->depth - t->format->shift);
 }
 
@@ -84,7 +84,7 @@ static double mean(const Trial *t, int x, int y)
     double sum = 0.0;
     for (int j = (int)(y * high); j < t->height && j < (y + 1) * high; j++)
         for (int i = (int)(x * wide); i < t->width && i < (x + 1) * wide; i++)
-            sum += overlap(y * high, (y + 1) * high, j) * overlap(x * wide, (x + 1) * wide, i) * grey(t, i, j);
+            sum += overlap(y * high, (y + 1) * high, j) * overlap(x * wide, (x + 1) * wide, i) * gray(t, i, j);
     return sum / (wide * high);
 }
 

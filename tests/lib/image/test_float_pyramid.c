@@ -26,7 +26,7 @@ START_TEST(a_flat_picture_is_flat_at_every_level)
 }
 END_TEST
 
-/* A ramp is its own blur: each sample has the level of its centre. */
+/* A ramp is its own blur: each sample has the level of its center. */
 START_TEST(samples_lie_where_the_header_says)
 {
     static const int sizes[][2] = {{640, 360}, {641, 359}, {320, 180}, {900, 700}, {200, 640}};

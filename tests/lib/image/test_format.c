@@ -93,9 +93,9 @@ START_TEST(halved_planes_of_odd_sizes_are_rounded_up)
 }
 END_TEST
 
-static double grey_weight(L1L2StabFormat format, int component)
+static double gray_weight(L1L2StabFormat format, int component)
 {
-    return l1l2_image_format_info(format)->grey[component];
+    return l1l2_image_format_info(format)->gray[component];
 }
 
 START_TEST(gray_is_made_of_the_right_components)
@@ -106,11 +106,11 @@ START_TEST(gray_is_made_of_the_right_components)
     static const L1L2StabFormat red_first[] = {L1L2STAB_FORMAT_RGBX, L1L2STAB_FORMAT_RGBA, L1L2STAB_FORMAT_RGB};
     static const L1L2StabFormat x_then_red[] = {L1L2STAB_FORMAT_XRGB, L1L2STAB_FORMAT_ARGB, L1L2STAB_FORMAT_ARGB64_LE};
     for (int i = 0; i < 3; i++) {
-        ck_assert_double_eq(grey_weight(luma_first[i], 0), 1.0);
-        ck_assert_double_eq(grey_weight(luma_second[i], 1), 1.0);
-        ck_assert_double_eq(grey_weight(x_then_red[i], 1), 0.299);
-        ck_assert_double_eq(grey_weight(blue_first[i], 0), 0.114);
-        ck_assert_double_eq(grey_weight(red_first[i], 0), 0.299);
+        ck_assert_double_eq(gray_weight(luma_first[i], 0), 1.0);
+        ck_assert_double_eq(gray_weight(luma_second[i], 1), 1.0);
+        ck_assert_double_eq(gray_weight(x_then_red[i], 1), 0.299);
+        ck_assert_double_eq(gray_weight(blue_first[i], 0), 0.114);
+        ck_assert_double_eq(gray_weight(red_first[i], 0), 0.299);
     }
 }
 END_TEST
@@ -120,7 +120,7 @@ START_TEST(gray_of_white_is_white)
     for (int id = FIRST; id <= LAST; id++) {
         double sum = 0.0;
         for (int i = 0; i < l1l2_image_format_pixel_components(l1l2_image_format_info((L1L2StabFormat)id)); i++)
-            sum += grey_weight((L1L2StabFormat)id, i);
+            sum += gray_weight((L1L2StabFormat)id, i);
         ck_assert_near(sum, 1.0, 1e-12);
     }
 }

@@ -110,7 +110,7 @@ START_TEST(the_range_depends_on_the_last_30_pictures_only)
 }
 END_TEST
 
-START_TEST(colors_are_mixed_to_grey)
+START_TEST(colors_are_mixed_to_gray)
 {
     static uint16_t colors[4 * W * H];
     for (int i = 0; i < W * H; i++) {
@@ -118,9 +118,9 @@ START_TEST(colors_are_mixed_to_grey)
         for (int k = 1; k < 4; k++)
             colors[4 * i + k] = (uint16_t)(7000 + (i * 7919) % 801);
     }
-    L1L2LevelRange range = {0}, grey = {0};
+    L1L2LevelRange range = {0}, gray = {0};
     fill(7000, 7800);
-    const L1L2Levels expected = push(&grey);
+    const L1L2Levels expected = push(&gray);
     const L1L2Levels levels = l1l2_image_levels_push(&range, l1l2_image_format_info(L1L2STAB_FORMAT_ARGB64_LE),
                                                      (const uint8_t *)colors, 8 * W, W, H);
     ck_assert(l1l2_image_levels_equal(levels, expected));
@@ -137,7 +137,7 @@ int main(void)
     tcase_add_test(tc, a_picture_with_nothing_in_it_is_left_as_it_is);
     tcase_add_test(tc, a_few_dead_pixels_do_not_matter);
     tcase_add_test(tc, the_range_depends_on_the_last_30_pictures_only);
-    tcase_add_test(tc, colors_are_mixed_to_grey);
+    tcase_add_test(tc, colors_are_mixed_to_gray);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);
 }

@@ -21,7 +21,7 @@ static void fill_plane(const SynthPicture *gray, const L1L2FormatInfo *format, u
     const int components = l1l2_image_format_pixel_components(format), bytes = l1l2_image_format_bytes(format);
     for (int y = 0; y < gray->height; y++)
         for (int k = 0; k < gray->width * components; k++) {
-            const uint32_t level = format->grey[k % components] > 0.0
+            const uint32_t level = format->gray[k % components] > 0.0
                                        ? gray->data[0][y * gray->stride[0] + k / components]
                                        : l1l2_rng_below(rng, 256);
             const uint32_t deep = level << (format->depth - 8) | l1l2_rng_below(rng, 1u << (format->depth - 8));

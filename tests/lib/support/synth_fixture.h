@@ -18,16 +18,16 @@ static inline SynthConfig small_clip(void)
 }
 
 /* Frame t in gray. */
-static inline void grey(const Synth *s, int t, uint8_t picture[PIXELS])
+static inline void gray(const Synth *s, int t, uint8_t picture[PIXELS])
 {
     synth_render_gray(s, t, picture, WIDTH);
 }
 
 /* Frame t of a clip of which no other is needed. */
-static inline void grey_once(const SynthConfig *cfg, int t, uint8_t picture[PIXELS])
+static inline void gray_once(const SynthConfig *cfg, int t, uint8_t picture[PIXELS])
 {
     Synth *s = synth_new(cfg);
-    grey(s, t, picture);
+    gray(s, t, picture);
     synth_free(s);
 }
 

@@ -104,27 +104,27 @@ START_TEST(all_planar_formats_show_the_same_and_packed_ones_its_gray)
     cfg.width = 321, cfg.height = 201;
     cfg.noise = 3.0, cfg.foreground = 0.2;
     Synth *s = synth_new(&cfg);
-    SynthPicture grey = synth_picture_new(L1L2STAB_FORMAT_GRAY8, cfg.width, cfg.height);
-    synth_render_gray(s, 5, grey.data[0], grey.stride[0]);
+    SynthPicture gray = synth_picture_new(L1L2STAB_FORMAT_GRAY8, cfg.width, cfg.height);
+    synth_render_gray(s, 5, gray.data[0], gray.stride[0]);
     for (int format = L1L2STAB_FORMAT_I420; format <= L1L2STAB_FORMAT_RGB; format++) {
         SynthPicture p = synth_picture_new((L1L2StabFormat)format, cfg.width, cfg.height);
         synth_render(s, 5, p.format, p.data, p.stride);
         if (format < L1L2STAB_FORMAT_BGRX) {
-            ck_assert_mem_eq(p.data[0], grey.data[0], grey.size);
+            ck_assert_mem_eq(p.data[0], gray.data[0], gray.size);
         } else {
             const int bytes = (int)(p.stride[0] / cfg.width);
             const int red = format == L1L2STAB_FORMAT_RGBX || format == L1L2STAB_FORMAT_RGBA ||
                             format == L1L2STAB_FORMAT_RGB ? 0 : 2;
             double off = 0.0;
-            for (size_t i = 0; i < grey.size; i++) {
+            for (size_t i = 0; i < gray.size; i++) {
                 const uint8_t *v = p.data[0] + i * (size_t)bytes;
-                off += fabs(0.299 * v[red] + 0.587 * v[1] + 0.114 * v[2 - red] - grey.data[0][i]) / (double)grey.size;
+                off += fabs(0.299 * v[red] + 0.587 * v[1] + 0.114 * v[2 - red] - gray.data[0][i]) / (double)gray.size;
             }
             ck_assert_double_le(off, 1.0);
         }
         synth_picture_free(&p);
     }
-    synth_picture_free(&grey);
+    synth_picture_free(&gray);
     synth_free(s);
 }
 END_TEST

@@ -23,8 +23,8 @@ START_TEST(a_cut_shows_another_scene_from_its_frame_on)
     cfg.event[1] = (SynthEvent){SYNTH_CUT, 20, 0, 0};
     Synth *cut = synth_new(&cfg), *uncut = clip_with(SYNTH_NONE, 0, 0, 0);
     for (int t = 8; t < 22; t++) {
-        grey(uncut, t, plain);
-        grey(cut, t, frame);
+        gray(uncut, t, plain);
+        gray(cut, t, frame);
         ck_assert_int_eq(synth_shot(cut, t), (t >= 10) + (t >= 20));
         if (t < 10 || t >= 20)
             ck_assert_mem_eq(frame, plain, PIXELS); /* the third shot is of the first scene again */
@@ -42,9 +42,9 @@ START_TEST(a_dissolve_is_a_mix_of_both_shots)
     Synth *dissolve = clip_with(SYNTH_DISSOLVE, 5, 4, 0);
     for (int t = 4; t <= 9; t++) {
         const double part = (t - 4) / 5.0;
-        grey(first, t, plain);
-        grey(second, t, other);
-        grey(dissolve, t, frame);
+        gray(first, t, plain);
+        gray(second, t, other);
+        gray(dissolve, t, frame);
         for (int i = 0; i < PIXELS; i++)
             ck_assert_near(frame[i], plain[i] + part * (other[i] - plain[i]), 1.1);
         ck_assert_int_eq(synth_shot(dissolve, t), part > 0.5);
@@ -84,14 +84,14 @@ START_TEST(black_frames_are_black_and_a_full_flash_is_white)
     Synth *flash = clip_with(SYNTH_FLASH, 5, 2, 1.0), *half = clip_with(SYNTH_FLASH, 5, 2, 0.5);
     for (int t = 4; t < 8; t++) {
         const bool during = t == 5 || t == 6;
-        grey(lit, t, plain);
-        grey(black, t, frame);
-        grey(flash, t, other);
+        gray(lit, t, plain);
+        gray(black, t, frame);
+        gray(flash, t, other);
         for (int i = 0; i < PIXELS; i++) {
             ck_assert_int_eq(frame[i], during ? 16 : plain[i]);
             ck_assert_int_eq(other[i], during ? 235 : plain[i]);
         }
-        grey(half, t, frame);
+        gray(half, t, frame);
         ck_assert_near(mean_level(frame), during ? 0.5 * (mean_level(plain) + 235.0) : mean_level(plain), 0.1);
         ck_assert_near(deviation(frame), deviation(plain) * (during ? 0.5 : 1.0), 0.5);
     }
@@ -106,8 +106,8 @@ START_TEST(a_covered_lens_shows_nothing_and_then_the_scene_again)
 {
     Synth *open = clip_with(SYNTH_NONE, 0, 0, 0), *covered = clip_with(SYNTH_COVER, 5, 20, 0);
     for (int t = 3; t < 28; t++) {
-        grey(open, t, plain);
-        grey(covered, t, frame);
+        gray(open, t, plain);
+        gray(covered, t, frame);
         if (t < 5 || t >= 25) {
             ck_assert_mem_eq(frame, plain, PIXELS);
         } else if (t >= 9 && t < 21) {
@@ -128,14 +128,14 @@ START_TEST(the_gain_scales_the_levels)
     Synth *constant = clip_with(SYNTH_NONE, 0, 0, 0), *dark = clip_with(SYNTH_GAIN, 5, 5, 0.2);
     Synth *ramp = clip_with(SYNTH_RAMP, 5, 9, 0.5), *flicker = clip_with(SYNTH_FLICKER, 0, 20, 0.1);
     for (int t = 0; t < 20; t++) {
-        grey(constant, t, plain);
+        gray(constant, t, plain);
         const double level = mean_level(plain);
-        grey(dark, t, frame);
+        gray(dark, t, frame);
         for (int i = 0; i < PIXELS; i++) /* both are rounded */
             ck_assert_near(frame[i], plain[i] * (t >= 5 && t < 10 ? 0.2 : 1.0), 0.61);
-        grey(ramp, t, frame);
+        gray(ramp, t, frame);
         ck_assert_near(mean_level(frame) / level, 1.0 - 0.05 * fmin(fmax(t - 4, 0), 10), 0.003);
-        grey(flicker, t, frame);
+        gray(flicker, t, frame);
         const double period = 5.0; /* frames: 6 Hz at 30 frames/s */
         ck_assert_near(mean_level(frame) / level, 1.0 + 0.1 * sin(6.283185307179586 * t / period), 0.003);
     }
@@ -150,8 +150,8 @@ END_TEST
 static void expect_repetition(const Synth *s, int t, bool repeats)
 {
     double F[9];
-    grey(s, t - 1, plain);
-    grey(s, t, frame);
+    gray(s, t - 1, plain);
+    gray(s, t, frame);
     synth_motion(s, t, F);
     ck_assert_int_eq(memcmp(plain, frame, PIXELS) == 0, repeats);
     ck_assert_int_eq(fabs(F[0] - 1.0) + fabs(F[2]) + fabs(F[3]) + fabs(F[5]) < 1e-9, repeats);
@@ -178,8 +178,8 @@ START_TEST(a_near_repetition_differs_by_its_noise_alone)
     cfg.noise = 3.0;
     cfg.fresh_noise = true;
     Synth *s = synth_new(&cfg);
-    grey(s, 3, plain);
-    grey(s, 4, frame);
+    gray(s, 3, plain);
+    gray(s, 4, frame);
     double square = 0.0;
     for (int i = 0; i < PIXELS; i++)
         square += (frame[i] - plain[i]) * (frame[i] - plain[i]) / (double)PIXELS;
@@ -196,8 +196,8 @@ START_TEST(a_frozen_picture_stands_while_the_time_goes_on)
     Synth *frozen = clip_with(SYNTH_FREEZE, 6, 3, 0), *moving = clip_with(SYNTH_NONE, 0, 0, 0);
     for (int t = 1; t < 12; t++)
         expect_repetition(frozen, t, t >= 6 && t < 9);
-    grey(moving, 9, plain);
-    grey(frozen, 9, frame);
+    gray(moving, 9, plain);
+    gray(frozen, 9, frame);
     ck_assert_mem_eq(frame, plain, PIXELS);
     synth_free(frozen);
     synth_free(moving);

@@ -11,7 +11,7 @@ START_TEST(ten_bits_show_the_same_picture_more_finely)
         SynthConfig cfg = small_clip();
         cfg.noise = noisy ? 4.0 : 0.0;
         Synth *s = synth_new(&cfg);
-        grey(s, 3, frame);
+        gray(s, 3, frame);
         synth_render_gray10(s, 3, deep, sizeof deep[0] * WIDTH);
         int finer = 0;
         for (int i = 0; i < PIXELS; i++) {
@@ -61,10 +61,10 @@ END_TEST
 START_TEST(the_noise_has_the_strength_that_was_asked_for_at_each_depth)
 {
     SynthConfig cfg = small_clip();
-    grey_once(&cfg, 3, plain);
+    gray_once(&cfg, 3, plain);
     cfg.noise = 5.0;
     Synth *s = synth_new(&cfg);
-    grey(s, 3, frame);
+    gray(s, 3, frame);
     synth_render_gray10(s, 3, deep, sizeof deep[0] * WIDTH);
     double sum[2] = {0.0}, square[2] = {0.0};
     for (int i = 0; i < PIXELS; i++) {
@@ -86,10 +86,10 @@ START_TEST(coding_rounds_the_levels_otherwise_in_each_frame)
 {
     SynthConfig cfg = small_clip();
     cfg.repeat_every = 5;
-    grey_once(&cfg, 4, plain);
+    gray_once(&cfg, 4, plain);
     cfg.coding = 12.0;
-    grey_once(&cfg, 3, other);
-    grey_once(&cfg, 4, frame);
+    gray_once(&cfg, 3, other);
+    gray_once(&cfg, 4, frame);
     ck_assert_int_le(worst_difference(frame, plain), 7);
     ck_assert_near(mean_difference(frame, plain), 12.0 / 4.0, 0.2);
     ck_assert_double_gt(mean_difference(frame, other), 2.0);
@@ -110,9 +110,9 @@ static int unmoved_pixels(const SynthConfig *cfg, bool unmoved[PIXELS])
     int count = 0;
     Synth *s = synth_new(cfg);
     memset(unmoved, true, PIXELS * sizeof unmoved[0]);
-    grey(s, 0, plain);
+    gray(s, 0, plain);
     for (int t = 11; t < 200; t += 11) {
-        grey(s, t, frame);
+        gray(s, t, frame);
         for (int i = 0; i < PIXELS; i++)
             unmoved[i] = unmoved[i] && frame[i] == plain[i];
     }
@@ -147,8 +147,8 @@ END_TEST
 static bool digit_changes(const Synth *s, int k, int a, int b)
 {
     const double block = HEIGHT / 160.0, left = (4 + 6 * k) * block;
-    grey(s, a, plain);
-    grey(s, b, other);
+    gray(s, a, plain);
+    gray(s, b, other);
     for (int y = 5; y < 14; y++)
         for (int x = (int)ceil(left); x < left + 5.0 * block; x++)
             if (plain[y * WIDTH + x] != other[y * WIDTH + x])

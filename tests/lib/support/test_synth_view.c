@@ -28,8 +28,8 @@ START_TEST(nearer_layers_move_farther_and_the_scene_as_the_camera)
     Synth *s = synth_new(&cfg);
     int moved_by[9] = {0}, blocks = 0;
     for (int t = 1; t < 400; t += 20) {
-        grey(s, t - 1, plain);
-        grey(s, t, frame);
+        gray(s, t - 1, plain);
+        gray(s, t, frame);
         for (int y = 2; y < HEIGHT - 2; y += 5)
             for (int x = 12; x < WIDTH - 12; x += 5) {
                 int best = 0;
@@ -51,8 +51,8 @@ END_TEST
 /* Frames of the same moment with and without a foreground. */
 static double covered_share(const Synth *with, const Synth *without, int t)
 {
-    grey(without, t, plain);
-    grey(with, t, frame);
+    gray(without, t, plain);
+    gray(with, t, frame);
     int count = 0;
     for (int i = 0; i < PIXELS; i++)
         count += frame[i] != plain[i];
@@ -79,8 +79,8 @@ START_TEST(a_mover_has_the_speed_that_was_asked_for)
 {
     SynthConfig cfg = still_clip();
     cfg.foreground = 0.3, cfg.movers = 1, cfg.mover_speed = 3.0;
-    grey_once(&cfg, 0, plain);
-    grey_once(&cfg, 1, frame);
+    gray_once(&cfg, 0, plain);
+    gray_once(&cfg, 1, frame);
     int best = 0;
     for (int dx = -8; dx <= 8; dx++)
         if (block_difference(frame, plain, WIDTH / 2, HEIGHT / 2, dx) <
@@ -128,9 +128,9 @@ START_TEST(an_open_shutter_shows_the_mean_of_what_the_camera_sees_meanwhile)
             sum[i] += (double)other[i] / INSTANTS;
     }
     double off = 0.0, sharp_off = 0.0;
-    grey(s, 7, frame);
+    gray(s, 7, frame);
     cfg.exposure = 0.0;
-    grey_once(&cfg, 7, plain);
+    gray_once(&cfg, 7, plain);
     for (int i = 0; i < PIXELS; i++) {
         off += fabs(frame[i] - sum[i]) / PIXELS;
         sharp_off += fabs(plain[i] - sum[i]) / PIXELS;
@@ -152,10 +152,10 @@ static double gradient(const uint8_t *p, ptrdiff_t to)
 START_TEST(out_of_focus_the_picture_is_soft_both_ways_and_stays_in_its_place)
 {
     SynthConfig cfg = still_clip();
-    grey_once(&cfg, 2, plain);
+    gray_once(&cfg, 2, plain);
     cfg.event[0] = (SynthEvent){SYNTH_BLUR, 2, 1, 12.0};
-    grey_once(&cfg, 2, frame);
-    grey_once(&cfg, 3, other);
+    gray_once(&cfg, 2, frame);
+    gray_once(&cfg, 3, other);
     ck_assert_mem_eq(other, plain, PIXELS);
     ck_assert_double_lt(gradient(frame, 1), 0.25 * gradient(plain, 1));
     ck_assert_double_lt(gradient(frame, WIDTH), 0.25 * gradient(plain, WIDTH));

@@ -16,9 +16,9 @@ static L1L2WarpMesh mesh_of(int width, int height, const L1L2Mat *map)
 
 static L1L2WarpMeshPlane luma_of(const L1L2WarpMesh *mesh, int in_width, int in_height)
 {
-    const L1L2FormatInfo *grey = l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8);
-    return (L1L2WarpMeshPlane){mesh, l1l2_warp_grid(grey, 0, 0, mesh->width, mesh->height),
-                               l1l2_warp_grid(grey, 0, 0, in_width, in_height)};
+    const L1L2FormatInfo *gray = l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8);
+    return (L1L2WarpMeshPlane){mesh, l1l2_warp_grid(gray, 0, 0, mesh->width, mesh->height),
+                               l1l2_warp_grid(gray, 0, 0, in_width, in_height)};
 }
 
 /* Positions of several runs. x and y have SLACK entries more than count. */

@@ -52,7 +52,7 @@ void l1l2_frame_queue_reset(L1L2FrameQueue *queue);
 /* How many frames are held. */
 int l1l2_frame_queue_count(const L1L2FrameQueue *queue);
 
-/* The record of a new last frame, cleared to zero; the queue must not be full. It stays where it is. */
+/* Appends a record, cleared to zero; the queue must not be full. The record does not move while the frame is held. */
 L1L2QueuedFrame *l1l2_frame_queue_append(L1L2FrameQueue *queue);
 
 /* One must be held. */

@@ -2,12 +2,13 @@
 /*
  * The time from frame to frame, in nominal frames, from the timestamps (L1L2StabFrame.pts).
  *
- * A nominal frame lasts 1 / frame_rate. Nothing is known of a step without two timestamps or without a frame rate: it
- * counts as one frame. The limits are in frame_time.c.
+ * A nominal frame lasts 1 / frame_rate. Where one of the two timestamps or the frame rate is missing, a step counts as
+ * one frame. The limits are in frame_time.c.
  *
- * Direction. Timestamps fall in reverse playback. In normal playback a step back is an error of the source, and tells
- * nothing. So a step counts by its length where it has the direction of the step before it, or where it goes forward
- * and no direction is known yet. A first step back counts as one frame, and so does the step that turns again.
+ * Direction. Timestamps fall in reverse playback. In normal playback a step back is an error of the source, and its
+ * length means nothing. So a step counts by its length where it has the direction of the step before it, or where it
+ * goes forward and no direction is known yet. The first step back counts as one frame, and so does the first step
+ * forward after it.
  */
 #ifndef L1L2_FRAME_TIME_H
 #define L1L2_FRAME_TIME_H

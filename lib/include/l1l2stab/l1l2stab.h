@@ -14,7 +14,8 @@
  *   Matrices     3x3, row-major, act on column vectors (x, y, 1).
  *   Directions   F_t maps frame t to frame t-1; C_t = F_1 ... F_t (eq. 1); P_t = C_t B_t (eq. 2);
  *                B_t maps the crop window to the source frame: it is the inverse map that a warp wants.
- *   Strides      bytes. Times: nanoseconds.
+ *   Strides      bytes.
+ *   Times        nanoseconds.
  *
  * Delay
  *   One frame in, one frame out, in order. Frame t can be pulled once frame t + window - 1 has been pushed, or after
@@ -26,8 +27,8 @@
  *   whatever `threads` is.
  *
  * Errors
- *   A call that returns an error < 0 has changed nothing, and the stream can go on. If a frame's motion cannot be
- *   measured (no memory), no call returns that error, because measuring may go on after the push. Instead a path starts
+ *   A call that returns an error < 0 has changed nothing, and the stream can go on. The motion of a frame may be
+ *   measured after push() has returned. So if that fails (no memory), no call returns the error. Instead a path starts
  *   at that frame, L1L2STAB_INFO_MOTION_FAILED marks it, and l1l2stab_take_error() returns the error. No frame is lost.
  *
  * Growth

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A gradual change between off and on, over a number of steps, smooth at both ends. */
+/* A gradual change from off to on or back, in a number of steps. It begins and ends smoothly. */
 #ifndef L1L2_COMMON_FADE_H
 #define L1L2_COMMON_FADE_H
 
@@ -11,7 +11,8 @@ typedef struct L1L2Fade {
     int length;
 } L1L2Fade;
 
-/* Takes one step towards the target; at_once: all steps. Returns the weight of `on`, [0, 1], exact at both ends. */
+/* Takes one step towards the target, or all steps if at_once. Returns the weight of `on`: exactly 0 when the change to
+ * off is complete, exactly 1 when the change to on is, and between them otherwise. */
 double l1l2_fade_next(L1L2Fade *fade, bool at_once);
 
 #endif

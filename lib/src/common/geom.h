@@ -10,7 +10,7 @@
  *   Pixels     centers at half-integers: the frame is exactly [-W/2, W/2] x [-H/2, H/2] px.
  *   Direction  F_t maps points of frame t to frame t-1; C_t = F_1 ... F_t (eq. 1); P_t = C_t B_t (eq. 2);
  *              B_t maps the crop window to the source frame.
- *   Parameters q = (x, y, a, b, e, f / 2 each):  [a + e  f - b  x]     a zoom, b turn, e stretch, f skew
+ *   Parameters q = (x, y, a/2, b/2, e/2, f/2):   [a + e  f - b  x]     a zoom, b turn, e stretch, f skew
  *                                                [b + f  a - e  y]
  *                                                [0      0      1]
  *              A motion model has the first `dim` of them: translation 2, similarity 4, affine 6; the rest is the
@@ -44,7 +44,7 @@ L1L2Mat l1l2_mat_diagonal(double x, double y);
 /* The number of parameters of a motion model. */
 int l1l2_mat_dim(L1L2StabMotionModel model);
 
-/* The affine map of the first `dim` parameters; they in turn are those of the map. */
+/* The affine map with the first `dim` of these parameters; and the reverse, all parameters of a map. */
 L1L2Mat l1l2_mat_from_q(const double q[L1L2_DIM], int dim);
 void l1l2_mat_to_q(const L1L2Mat *m, double q[L1L2_DIM]);
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A persistent pool of threads. The caller of l1l2_pool_run() works too, so a pool of one thread has no helper. One
- * mutex guards everything. A part is dozens of rows, so taking one costs little in comparison.
+ * mutex guards everything. A part is dozens of rows of a picture, so locking the mutex to take one costs little in
+ * comparison.
  */
 #include "common/pool.h"
 
@@ -29,7 +30,7 @@ struct L1L2Pool {
     int parts, next, unfinished;
     void (*part)(void *context, int index);
     void *context;
-    void (*task)(void *context); /* NULL: none waits to be begun */
+    void (*task)(void *context); /* that no thread has begun; NULL: none */
     void *task_context;
     bool task_runs;
 };

@@ -16,14 +16,14 @@ typedef struct L1L2Pair {
 /* The tracks of one frame, to which a map is fitted. */
 typedef struct L1L2TrackSet {
     const L1L2Pair *pairs;
-    const double *consensus_weights; /* >= 0: the map whose inliers have most of them wins; NULL: each track has 1 */
-    const double *fit_weights;       /* >= 0: in the least squares on the inliers; NULL: each track has 1 */
+    const double *consensus_weights; /* >= 0: the map with the largest sum over its inliers wins; NULL: all 1 */
+    const double *fit_weights;       /* >= 0: for the least squares fit to the inliers; NULL: all 1 */
     int count;                       /* of pairs and weights, at most L1L2_RANSAC_MAX_PAIRS */
     double threshold;                /* largest distance of an inlier, in the pairs' unit */
     L1L2Rng *rng;                    /* of RANSAC's draws */
 } L1L2TrackSet;
 
-/* The frame in 8x6 cells: coverage and track weights count by them. */
+/* The frame is divided into 8x6 cells, for coverage and for track weights. */
 enum { L1L2_FIT_CELLS_X = 8, L1L2_FIT_CELLS_Y = 6, L1L2_FIT_CELLS = L1L2_FIT_CELLS_X * L1L2_FIT_CELLS_Y };
 
 /* The part of the frame's cells in which an inlier lies, [0, 1]. half_w, half_h: half of the frame's size in the

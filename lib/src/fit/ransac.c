@@ -5,8 +5,8 @@
 
 #include "fit/least_squares.h"
 
-/* With half of the pairs wrong, 300 draws of two miss all good pairs once in 10^37. Fewer are drawn once a set of
- * inliers is found: as many as miss all good pairs with the probability below. */
+/* With half of the pairs wrong, the probability that none of 300 draws of two is all good is 10^-37. After a set of
+ * inliers is found, fewer are drawn: so many that this probability is miss_probability. */
 static const int max_draws = 300, min_draws = 10;
 static const double miss_probability = 1e-4;
 /* A minimal set nearer together than this many thresholds is degenerate: noise of its points rotates and scales the map

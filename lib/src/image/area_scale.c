@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Down the columns first, then across.
+ * Sums down the columns first, then across the rows.
  *
- * Rows are added up in the order in which they lie in memory, so the source is read once, at the speed of reading. What
- * is left to do across is one row of sums for each output row.
+ * Source rows are added up in the order in which they lie in memory, so the source is read once, in order. The pass
+ * across then works on one row of sums for each output row.
  *
  * Sizes from : to are reduced to coprime numbers total : unit. With every source sample cut into `unit` parts, each
  * output covers exactly `total` of these parts, and all weights are whole numbers.
@@ -30,12 +30,12 @@ struct L1L2AreaScaler {
     bool deep;          /* samples have 16 bits */
     bool copy;          /* the output is the source: same size, one component of 8 bits */
     bool narrow;        /* samples are bytes, and a column's weighted sum of them fits 15 bits */
-    bool pairs;         /* one component, halved across */
+    bool pairs;         /* one component, half as wide: an output is the sum of two samples */
     int components;     /* of a pixel */
     Axis x, y;
     L1L2FormatInfo format;
-    uint32_t base;      /* subtracted from a column's sum, what is less becomes 0 */
-    int shift;          /* low bits of a column's sum that are rounded off, so that 15 bits remain */
+    uint32_t base;      /* subtracted from a column's sum; a negative result becomes 0 */
+    int shift;          /* number of low bits that are rounded off a column's sum, so that it fits 15 bits */
     int whole;          /* the sum of the weights of an output across */
     int taps;           /* samples that an output sums across, rounded up to a whole block */
     int count;          /* outputs of a row, rounded up to a whole block */
@@ -43,7 +43,7 @@ struct L1L2AreaScaler {
     int32_t *first;     /* [count]: the first sample of each output */
     int16_t *weight;    /* [count * taps], in the order of area_scale_row.h */
     uint32_t *sum;      /* [samples of a row]: weighted sums down the columns */
-    int16_t *column;    /* [samples of a row + taps]: these sums in 15 bits; zeros behind them */
+    int16_t *column;    /* [samples of a row + taps]: these sums in 15 bits, then zeros */
     int32_t *across;    /* [count]: sums across */
 };
 
@@ -72,8 +72,8 @@ static int covered(const Axis *axis, int i, int j)
     return parts > 0 ? (int)parts : 0;
 }
 
-/* Sets the weights across. A weight is the difference of two running sums of exact weights, each rounded: so the
- * weights of every output have the same sum, which is returned. */
+/* Sets the weights across. The running sum of the exact weights is rounded at each tap, and a weight is the difference
+ * of two neighboring sums. So the weights of every output have the same sum, which is returned. */
 static int set_weights(L1L2AreaScaler *s, const double *gray)
 {
     const int whole = s->components == 1 ? s->x.total : WEIGHT_MAX, block = L1L2_AREA_SCALE_BLOCK;
@@ -93,7 +93,8 @@ static int set_weights(L1L2AreaScaler *s, const double *gray)
     return whole;
 }
 
-/* Of one component, only the levels in the range have to fit 15 bits. Where several are mixed, they all have to. */
+/* With one component, only the levels in the range have to fit 15 bits. With several, which are mixed, all levels have
+ * to. */
 void l1l2_image_scale_set_levels(L1L2AreaScaler *s, L1L2Levels levels)
 {
     const bool stretched = !l1l2_image_levels_equal(levels, l1l2_image_levels_full(&s->format));
@@ -128,7 +129,7 @@ L1L2AreaScaler *l1l2_image_scale_new(const L1L2FormatInfo *format, int width, in
     s->y = axis_new(height, out_height);
     s->copy = !s->deep && s->components == 1 && s->x.total == 1 && s->y.total == 1;
     s->pairs = s->components == 1 && s->x.total == 2 && s->x.unit == 1;
-    /* An output may begin within a sample: then it reaches one sample further. */
+    /* An output that begins within a sample covers a part of one more sample. */
     const int pixels = (s->x.total + s->x.unit - 1) / s->x.unit + (s->x.unit > 1);
     s->taps = (pixels * s->components + block - 1) / block * block;
     s->count = (out_width + block - 1) / block * block;
@@ -197,7 +198,7 @@ static void round_columns(const uint32_t *sum, int count, int shift, int16_t *re
     }
 }
 
-/* The same above a base. */
+/* The same, after `base` is subtracted. */
 static void round_columns_above(const uint32_t *sum, uint32_t base, int count, int shift, int16_t *restrict column)
 {
     const uint32_t half = 1u << shift >> 1;

@@ -3,10 +3,10 @@
  * Scales the first plane of a frame down to a small gray picture by area averaging: each output pixel is the mean of
  * the part of the source that it covers. Color components are mixed to gray with the weights of the format.
  *
- * Fixed point. A column's weighted sum is exact while it fits 15 bits: for bytes, while the highest level times the
- * parts that an output covers does, 255 * 128. That holds for factors that are ratios of small numbers, such as 2, 3,
- * 4/3 and 9/8. Otherwise the sum is rounded to between 14 and 15 bits. The sum across is exact for one component, and
- * rounded to 8 bits once, halves up. It fits 32 bits: at most 2^15 times the weights of an output, below 2^15 in sum.
+ * Fixed point. A column's weighted sum is exact if it fits 15 bits. For bytes it does if an output covers at most 128
+ * parts of the column (255 * 128 < 2^15), as with factors that are ratios of small numbers, such as 2, 3, 4/3 and 9/8.
+ * Otherwise the sum is rounded to 15 bits at most. The sum across is exact for one component, and rounded to 8 bits
+ * once, halves up. It fits 32 bits, since a column's sum and the sum of an output's weights are both below 2^15.
  */
 #ifndef L1L2_IMAGE_AREA_SCALE_H
 #define L1L2_IMAGE_AREA_SCALE_H

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The step across in plain C, and the choice of an instruction set. */
+/* The pass across in plain C, and the choice of an instruction set. */
 #include "image/area_scale_row.h"
 
 #include "common/cpu.h"

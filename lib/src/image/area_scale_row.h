@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The area scaler's step across a row: every output is a weighted sum of neighboring samples.
+ * The area scaler's pass across a row: every output is a weighted sum of neighboring samples.
  *
  * Output x sums `taps` samples, a multiple of 4, from samples[first[x]] on. Weights lie in blocks of 4 outputs x 4
  * taps: the weights of four outputs' first four taps, of their next four taps, and so on; then those of the next four

@@ -6,9 +6,9 @@
 
 #include "common/mem.h"
 
-/* The blur of level 0: a Gaussian of sigma 1.2 samples, sampled at the integers and normalized. It makes the brightness
- * between two samples nearly linear, which Gauss-Newton and bilinear lookup take for granted, and it takes away most of
- * the noise and of what compression adds. */
+/* The blur of level 0: a Gaussian of sigma 1.2 samples, sampled at the integers and normalized. After it the brightness
+ * between two samples is nearly linear, which Gauss-Newton and bilinear lookup assume. It also removes most of the
+ * noise and of the compression artifacts. */
 enum { RADIUS = 4 };
 static const float kernel[RADIUS + 1] = {0.3324903f, 0.2349537f, 0.0829072f, 0.0146086f, 0.0012854f};
 
@@ -62,7 +62,7 @@ static void halve_bytes(const uint8_t *gray, ptrdiff_t stride, int width, int he
     }
 }
 
-/* Further halvings lie in the same memory: each result is written where only its own inputs, or none, are left. */
+/* Halves in place. A result is written where all samples have been read already, or where its own inputs lie. */
 static void halve_again(uint16_t *sums, int from_width, int width, int height)
 {
     for (int y = 0; y < height; y++) {
@@ -112,7 +112,7 @@ static void blur_columns(const float *from, float *to, int width, int height)
     }
 }
 
-/* Along the rows of level 0, in place. `line` has the row with its ends repeated. */
+/* Along the rows of level 0, in place. `line` is working memory: a row, with its end samples repeated on both sides. */
 static void blur_rows(float *sample, float *line, int width, int height)
 {
     for (int y = 0; y < height; y++) {

@@ -3,11 +3,12 @@
 
 #include <string.h>
 
-/* The grid of pixels that are looked at: enough for percentiles, few enough to cost nothing. */
+/* The grid of pixels that are sampled: enough for percentiles, and few enough to cost almost no time. */
 enum { COLUMNS = 64, ROWS = 36, SAMPLES = COLUMNS * ROWS, TAIL = SAMPLES / 100 };
-/* Ends are rounded to a power of two that is at most this part of the range. */
+/* The ends of the range are rounded to multiples of a power of two, which is at most 1 / STEPS of the range. */
 enum { STEPS = 8 };
-/* Stretched below this part of the full range; what spans fewer steps of the format than this is nothing. */
+/* A range is stretched if it is below 1 / MIN_PART of the full range. A picture whose percentiles are less than
+ * MIN_STEPS steps of the format apart counts as empty. */
 enum { MIN_PART = 8, MIN_STEPS = 32 };
 
 L1L2Levels l1l2_image_levels_full(const L1L2FormatInfo *format)
@@ -35,7 +36,8 @@ static uint16_t gray_of(const L1L2FormatInfo *format, const uint8_t *p)
     return (uint16_t)(gray + 0.5);
 }
 
-/* The level that `rank` of the samples are below: by their high bytes, then by the low bytes of those that share it. */
+/* The sample of this rank in ascending order, from 0. Found by a histogram of the high bytes, then by one of the low
+ * bytes of the samples with the right high byte. */
 static int32_t ranked(const uint16_t *sample, int rank)
 {
     int high[256] = {0}, low[256] = {0}, h = 0, l = 0;

@@ -5,10 +5,10 @@
 
 enum { W = L1L2_THUMBNAIL_W, H = L1L2_THUMBNAIL_H, MAX_SHIFT_X = W / 8, MAX_SHIFT_Y = H / 8, BLOCK = 6 };
 
-static const double min_deviation = 4.0; /* gray levels: below it is noise and compression */
+static const double min_deviation = 4.0; /* gray levels; less can be noise or compression artifacts */
 static const double same_shot = 0.5;     /* correlation; two shots of different things are around 0 */
-/* A hand before the lens leaves parts of the picture unchanged: it is one shot if this part of the blocks matches this
- * well. */
+/* A hand in front of the lens leaves parts of the picture visible. So two pictures are of one shot if `enough_blocks`
+ * of their blocks have a correlation of `same_block`. */
 static const double same_block = 0.8, enough_blocks = 0.2;
 
 typedef struct Sums {
@@ -20,7 +20,7 @@ static int most(int a, int b)
     return a > b ? a : b;
 }
 
-/* a at (x, y) against b at (x + dx, y + dy), where both exist, for x0 <= x < x1, y0 <= y < y1. */
+/* Compares a at (x, y) with b at (x + dx, y + dy), where both exist, for x0 <= x < x1 and y0 <= y < y1. */
 static Sums area_sums(const L1L2Thumbnail *a, const L1L2Thumbnail *b, int dx, int dy, int x0, int y0, int x1, int y1)
 {
     Sums s = {0};
@@ -61,7 +61,7 @@ double l1l2_image_thumbnail_correlation(const L1L2Thumbnail *a, const L1L2Thumbn
     return best;
 }
 
-/* The part of the blocks that match at a shift, [0, 1]. */
+/* Which part of the blocks match at this shift, [0, 1]. */
 static double alike_blocks(const L1L2Thumbnail *a, const L1L2Thumbnail *b, int dx, int dy)
 {
     int alike = 0;

@@ -33,8 +33,9 @@ static void put(Rows *rows, int r, const double g[L1L2_DIM], double lo, double h
  * point (x, y) goes to
  *     ((A + E) x + (F - B') y + X,  (B' + F) x + (A - E) y + Y)
  *   = (q0 + 2x q2 - 2y q3 + 2x q4 + 2y q5,  q1 + 2y q2 + 2x q3 - 2y q4 + 2x q5).
- * With (u, v) = (2x, 2y) these are the two inclusion rows of a corner. The corners come with both signs, so two-sided
- * rows on all four corners are more than is needed for one side each, but they are the definition written down.
+ * With (u, v) = (2x, 2y) these are the two inclusion rows of a corner. Where a left corner is beyond the right side of
+ * the frame, a right corner is too. So one side of each row never decides; both sides are kept because they are the
+ * definition.
  */
 static void update_rows(const L1L2PathCropWindow *crop, Rows *rows)
 {

@@ -72,7 +72,7 @@ static L1L2PathCropWindow crop_of(const L1L2Path *path, const L1L2PathFrame *fra
     return l1l2_path_crop_window(path->cfg.width, path->cfg.height, frame->crop_ratio, path->problem->dim);
 }
 
-/* The frames of a window that are averaged with the window before it. Where there are none the join is continuous. */
+/* How many frames of a window are averaged with the window before it. If none, the join is continuous. */
 static int blended(const L1L2Path *path, const L1L2PathWindow *step)
 {
     return path->cfg.join == L1L2STAB_JOIN_BLEND ? step->shared : 0;
@@ -85,8 +85,8 @@ static void steps_of(const L1L2Path *path, int64_t frame, double step[L1L2_PATH_
         step[back] = frame - back > path->start ? frame_at(path, frame - back)->step : 1.0;
 }
 
-/* The time that frame t of a window stands for, nominal frames. The step behind the window's end counts as one frame,
- * because that frame may not have come yet. */
+/* The time that frame t of a window stands for, nominal frames. The step after the window's last frame counts as one
+ * frame, because the frame after it may not have come yet. */
 static double share_of_time(const L1L2Path *path, const L1L2PathWindow *step, int t)
 {
     const int64_t frame = path->start + step->first + t;

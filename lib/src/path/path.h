@@ -58,7 +58,7 @@ typedef struct L1L2PathFrame {
 
 /* A new frame. */
 typedef struct L1L2PathInput {
-    const L1L2Mat *F;    /* frame t to t-1. The path takes what its model can express; one that is not finite or not
+    const L1L2Mat *F;    /* frame t to t-1. It is reduced to the path's model; a map that is not finite or not
                           * invertible counts as no motion */
     bool starts_path;    /* the path before it ends; F is not used */
     double lambda;       /* of eq. (4) at 30 frames/s */

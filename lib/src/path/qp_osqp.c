@@ -19,8 +19,8 @@
  * OSQP's allocator functions take no context, so the list's owner is found by a thread-local pointer, which is set
  * during the call alone.
  *
- * An OSQP of the system has its own allocator. The part of a half-built workspace that it leaves unset is set here
- * before osqp_cleanup(); its unchecked allocations cannot be mended from outside.
+ * An OSQP of the system has its own allocator. After a failed setup, clean_up() sets the members that osqp_setup() left
+ * unset, so that osqp_cleanup() is safe. Nothing can be done from outside about OSQP's unchecked allocations.
  */
 #include <osqp.h>
 

@@ -29,7 +29,7 @@
  *                                               needs it, only motions that no camera makes.
  * rescue_work_a_frame   6000    the same, for   Some 2 ms: windows that slide by one frame need a solve for each frame,
  *                               each frame      and keep up with the video only if it costs less than a frame lasts.
- * rescue_least          25      iterations      Fewer are not worth OSQP's setup, which costs as much.
+ * rescue_least          25      iterations      With fewer OSQP is not run: its setup alone costs as much.
  * several_frames        8       frames          AUTO: OSQP's check costs about as much as the predictor. Spread over
  *                                               8 frames it is below 1 ms a frame at N = 150 (bench_path).
  */

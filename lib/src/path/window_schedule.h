@@ -8,7 +8,7 @@
  * So frame t is decided when frame t + N - 1 has arrived or when the path has ended, and never later.
  *
  * An early window is for frames that must leave sooner, because a live source is late. It covers the frames that have
- * arrived, and emits as many of them as were asked for. The next window starts behind these, as always. Nothing is
+ * arrived, and emits as many of them as were asked for. The next window starts after these, as always. Nothing is
  * blended around an early window: the weights of eq. (8) belong to overlaps of K frames.
  */
 #ifndef L1L2_PATH_WINDOW_SCHEDULE_H
@@ -21,7 +21,7 @@ typedef struct L1L2PathSchedule {
     int window;   /* N */
     int overlap;  /* K, [3, N) */
     int64_t next; /* where the next window starts, frames since the path's start: all before it are emitted */
-    bool early;   /* the last window was */
+    bool early;   /* the last window was an early one */
 } L1L2PathSchedule;
 
 typedef struct L1L2PathWindow {

@@ -14,12 +14,12 @@
  *     W' x_t = XR' y,     where     (XX + ridge^2 I) y = x_t:
  *
  * one solve with a single right-hand side, whatever the number of residual parameters. Only then is frame t added to
- * the sums. So each frame is predicted by a regression that has not seen it, and what is explained of it is not a
- * matter of how many regressors there are: twelve of them explain part of any twelve frames that they were fitted to,
- * but nothing of the next one.
+ * the sums. So each frame is predicted by a regression that has not seen it, and the number of regressors does not help
+ * the prediction: twelve regressors explain part of any twelve frames to which they are fitted, but nothing of the next
+ * frame.
  *
- * The ridge makes the prediction zero while the camera has hardly moved: a handful of frames would otherwise be fitted
- * exactly by anything.
+ * The ridge keeps the prediction near zero while the camera has hardly moved. Without it, any regressors would fit the
+ * first few frames exactly.
  */
 #include "rolling_shutter/camera_gate.h"
 
@@ -72,7 +72,7 @@ static double mean_square(const L1L2ShutterModel *model, const L1L2ShutterResidu
     return sum / (COLUMNS * ROWS);
 }
 
-/* Predicts the frame in the middle of the history and compares. Returns what the prediction leaves of its residual. */
+/* Predicts the frame in the middle of the history and compares. Returns its residual less the prediction. */
 static L1L2ShutterResidual prediction_error(const L1L2ShutterGate *gate, double ridge, const double x[N])
 {
     L1L2ShutterResidual left = gate->r[DELAY];

@@ -40,8 +40,8 @@ void l1l2_shutter_gate_break(L1L2ShutterGate *gate);
 void l1l2_shutter_gate_push(L1L2ShutterGate *gate, const L1L2ShutterModel *model, const L1L2Mat *F,
                             L1L2ShutterMeasurement *measurement);
 
-/* The part of the residuals of the last frames that the camera's motion explains, at most 1; negative where the
- * predictions make it worse; 0 where nothing was compared. */
+/* The part of the last frames' residuals that the camera's motion explains: at most 1, negative if the predictions make
+ * them larger, 0 if nothing was compared. */
 double l1l2_shutter_gate_share(const L1L2ShutterGate *gate);
 
 #endif

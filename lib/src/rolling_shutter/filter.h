@@ -3,15 +3,15 @@
  * Algorithm 1, step 4, over time: from the residuals between frames to the residual e_t of each frame, which the warp
  * removes.
  *
- * The camera path, and with it B_t, is one similarity a frame. e_t is what the frame has beyond it (model.h). Measured
- * are the changes m_t = e_t - e_{t-1} (fit.c), not e_t itself: what all frames have in common is invisible. So the e_t
- * of a path minimize
+ * The camera path, and with it B_t, is one similarity a frame. e_t is what the frame has beyond it (model.h). The fit
+ * (fit.c) measures the changes m_t = e_t - e_{t-1}, not e_t itself, because what all frames have in common is
+ * invisible. So the e_t of a path minimize
  *
  *     sum_t w_t |m_t - (e_t - e_{t-1})|^2 + leak sum_t |e_t - k_t|^2,
  *
  * where k_t is the predicted residual. With a homography k_t is zero. With a mixture it is the skew that the camera's
- * velocity and acceleration make of a frame at the estimated readout (readout.h): the one part of e_t that m_t cannot
- * show and the path can.
+ * velocity and acceleration make of a frame at the estimated readout (readout.h). That skew is the part of e_t that m_t
+ * cannot show, but that follows from the camera's motion.
  *
  * This replaces the key frames of G2011 (section 5). There the changes are chained between key frames, at which e is
  * zero, and mixed by distance. So each key frame keeps its own skew. Here none does: on simulated tracks with 0.1 px of

@@ -18,9 +18,9 @@
  *   - Inclusion. Every node is in [-half, half] along both axes: a last clip takes care of rounding. Samples are convex
  *     combinations of the four nodes around them, so every sample is inside the source, too.
  *   - No fold. The map is continuous and increasing, so the order of the nodes along each axis stays.
- *   - No jump in time. As `most` passes `half`, the map is the identity; from there it is continuous in `most`, which
- *     is as smooth in time as B_t and the residual.
- *   - All else keeps its correction: nodes more than an eighth of the side inside are not moved.
+ *   - No jump in time. Where `most` equals `half`, the map is the identity. Beyond that it changes continuously with
+ *     `most`, which is as smooth in time as B_t and the residual.
+ *   - The rest keeps its correction: nodes that are farther inside than an eighth of the side are not moved.
  */
 #include "rolling_shutter/mesh.h"
 

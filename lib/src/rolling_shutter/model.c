@@ -58,8 +58,8 @@ void l1l2_shutter_model_basis(const L1L2ShutterModel *model, L1L2Point p, double
     const double row = p.y / (2.0 * model->half_h);
     weigh_bands(row, x + L1L2_SHUTTER_X);
     memcpy(y + L1L2_SHUTTER_Y, x + L1L2_SHUTTER_X, L1L2_SHUTTER_BANDS * sizeof *y);
-    /* The bands already hold what moves a whole row alike. So roll by row has no x component, and zoom by row has no y
-     * component: those would depend on the row alone. */
+    /* The bands already describe what moves a whole row alike. So roll by row has no x component, and zoom by row has
+     * no y component: those would depend on the row alone. */
     x[L1L2_SHUTTER_ROLL] = -p.y, y[L1L2_SHUTTER_ROLL] = p.x;
     y[L1L2_SHUTTER_ROLL_BY_ROW] = p.x * row;
     x[L1L2_SHUTTER_ZOOM] = p.x, y[L1L2_SHUTTER_ZOOM] = p.y;

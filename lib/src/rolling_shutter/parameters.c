@@ -17,7 +17,7 @@ const L1L2ShutterParameters l1l2_shutter_default_parameters = {
     .bend_weight = 3.0,
     /* Tracks: wobble at 20 Hz 0.187 / 0.196 / 0.216, at 10 Hz 0.054 / 0.056 / 0.063. */
     .translation_weight = 0.1,
-    /* Tracks: wobble at 20 Hz 0.196 doubled 0.207, at 10 Hz 0.053 / 0.056 / 0.064. */
+    /* Tracks: wobble at 20 Hz 0.196, doubled 0.207, at 10 Hz 0.053 / 0.056 / 0.064. */
     .linear_weight = 0.3,
     /* Tracks: skew at 20 Hz 0.147 / 0.143, doubled unchanged. */
     .wide_scale = 1.0,
@@ -42,26 +42,26 @@ const L1L2ShutterParameters l1l2_shutter_default_parameters = {
     .unmeasured_weight = 0.1,
     /* A memory of 20 frames. Clip: walk-corridor 0.051 / 0.004, bag 0.074 / 0.008. */
     .confidence_fade = 0.95,
-    /* Noise explains -6 %, ten real clips 3 to 72 %; one with less than 30 % became worse by its residual. Tracks:
-     * doubled, wobble at 10 Hz 0.097 instead of 0.056, of a homography 0.282 instead of 0.138. Clip: walk-corridor
-     * 0.00 / 0.51, bag 0.01 / 0.74. */
+    /* The prediction explains -6 % of pure noise, and 3 to 72 % of the residuals of ten real clips. A clip with less
+     * than 30 % became worse by the correction. Tracks: doubled, wobble at 10 Hz 0.097 instead of 0.056, of a
+     * homography 0.282 instead of 0.138. Clip: walk-corridor 0.00 / 0.51, bag 0.01 / 0.74. */
     .halves = {0.3, 0.5},
-    /* A shutter alone explains 90 %, real clips 10 to 50 %, slow subjects in the middle less than nothing. Clip:
-     * walk-corridor 0.004 / 0.079, bag 0.00 / 0.05. */
+    /* The prediction explains 90 % of a shutter alone, and 10 to 50 % on real clips. Of slow subjects in the middle it
+     * explains less than nothing. Clip: walk-corridor 0.004 / 0.079, bag 0.00 / 0.05. */
     .columns = {0.0, 0.15},
-    /* A shutter alone explains 80 to 98 %, real clips 30 to 80 %, independent subjects less than 5 % in 95 of 100
-     * frames: `none` is three times that. Tracks: doubled, wobble at the start 0.188 instead of 0.047. Clip: bag 0.00
-     * / 0.80, walk-corridor 0.00 / 0.01. */
+    /* The camera's motion explains 80 to 98 % of a shutter alone, 30 to 80 % on real clips, and less than 5 % of
+     * independent subjects in 95 of 100 frames. `none` is three times those 5 %. Tracks: doubled, wobble at the start
+     * 0.188 instead of 0.047. Clip: bag 0.00 / 0.80, walk-corridor 0.00 / 0.01. */
     .camera = {0.15, 0.3},
-    /* 15 px at 640x360. Clip: bag 0.03 / 0.00: the stretch is mostly the limit that holds. It bounds the error of the
-     * mesh's fixed point (mesh.c) and what a wrong residual can do. */
+    /* 15 px at 640x360. Clip: bag 0.03 / 0.00, since mostly max_stretch is the limit that is reached. It bounds the
+     * error of the mesh's fixed point (mesh.c) and what a wrong residual can do. */
     .max_reach = 0.02,
     /* Tracks: skew of the pan 7.47 / 6.10 / 3.38; wobble at 20 Hz 0.730 / 0.196, doubled unchanged. More would be right
      * for a shutter, but such a correction reshapes the picture visibly. Clip: bag 0.22 / 0.01. */
     .max_stretch = 0.03,
 
     /* Tracks: doubled, skew at 10 Hz 0.061 instead of 0.050, at 20 Hz 0.177 instead of 0.143; halved unchanged, since
-     * of simulated tracks either all or nothing agrees. Clip: walk-corridor 0.00 / 0.19. */
+     * simulated tracks agree either fully or not at all. Clip: walk-corridor 0.00 / 0.19. */
     .readout_agreement = {0.4, 0.6},
     /* No camera takes longer for a frame than a frame lasts. Tracks: halved, skew at 20 Hz 0.152 instead of 0.143.
      * Clip: walk-corridor 0.11 / 0.00. */

@@ -26,7 +26,7 @@ typedef struct L1L2ShutterParameters {
 
     /* camera_gate.c: the regression of the residual on the camera's motions. */
     double gate_ridge; /* ridge of the regression, as a motion: less motion than this predicts nearly nothing */
-    double gate_arm;   /* what a roll of 1 rad or a zoom by 1 moves the frame's points on average */
+    double gate_arm;   /* by how much a roll of 1 rad, or a zoom of 1, moves the frame's points on average */
 
     /* filter.c: the residual of each frame. */
     double leak; /* weight of |e_t - k_t|^2 against a measured change's weight of 1 */
@@ -45,7 +45,7 @@ typedef struct L1L2ShutterParameters {
     double compress_zone; /* part of the source's side that is compressed where the mesh reaches across that side */
 
     /* similarity_by_rows.c: the similarity of a frame whose rows moved differently. */
-    double rows_unexplained; /* part of the squared residuals that the rows' shifts may leave, at most */
+    double rows_unexplained; /* the largest part of the squared residuals that the rows' shifts may leave unexplained */
     double rows_cap;         /* thresholds: no residual counts as longer, and one of this length has half weight */
     double rows_max_jump;    /* thresholds: from one band's shift to the next; a subject's edge is a larger jump */
 } L1L2ShutterParameters;

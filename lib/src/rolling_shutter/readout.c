@@ -7,8 +7,8 @@
  *     slope(r_t) = readout * (v_t - v_{t-1}).
  *
  * F_t is the camera's path from frame t-1 to frame t, and thus the velocity halfway between them. v_t - v_{t-1} is the
- * path's acceleration at the same halfway point, one frame long, which is the derivative of the sequence F at t. Five
- * motions give it to fourth order: (F_{t-2} - 8 F_{t-1} + 8 F_{t+1} - F_{t+2}) / 12.
+ * path's acceleration at the same halfway point, one frame long, which is the derivative of the sequence F at t. From
+ * five motions it is, to fourth order: (F_{t-2} - 8 F_{t-1} + 8 F_{t+1} - F_{t+2}) / 12.
  *
  * That holds for slow changes of the velocity only, so both sides go through the same binomial low-pass filter
  * (1 4 6 4 1)/16 before the regression. The readout is the least squares slope sum(xy) / sum(xx), with forgetting: the

@@ -18,8 +18,8 @@ enum {
     HALF_PHASE = 1 << (POSITION_SHIFT - 1)
 };
 
-/* Where fixed point is used, positions stay below FAR + MAX_STEP * 2^14 = 2^20 samples in size: 20 bits and a sign
- * before the point, so 53 bits with the 32 behind it, and 31 with the 10 of a phase. */
+/* Where fixed point is used, the size of a position stays below FAR + MAX_STEP * 2^14 = 2^20 samples. That is 20 bits
+ * and a sign: 53 bits with 32 fractional bits, and 31 bits with the 10 fractional bits of a phase. */
 static const double FAR = 524288.0;
 static const double MAX_STEP = 32.0;
 
@@ -47,7 +47,8 @@ L1L2_INLINE void run_even_steps(double start, double step, int u, int count, int
     run_fixed(to_fixed(start) + (uint64_t)u * step_fixed + HALF_PHASE, step_fixed, count, out);
 }
 
-/* The same for maps that no stabilizer makes: every position by itself; NaN, from an overflow, becomes -FAR. */
+/* The same beyond FAR and MAX_STEP, where no stabilizer's map is: every position is computed by itself. NaN, from an
+ * overflow, becomes -FAR. */
 static inline void run_saturated(double start, double step, int u, int count, int32_t *out)
 {
     for (int i = 0; i < count; i++) {

@@ -55,9 +55,9 @@ static void round_weights(const double *weight, int taps, int nearest, int16_t *
  *   a (t^3 - 2 t^2 + t)               =  -0.75 q n
  *   (a + 2) t^3 - (a + 3) t^2 + 1     =  n - 0.25 q + 1.25 q n
  *
- * and the same with t and n exchanged from the other side. t, n and q have 15 fractional bits, weights 14, so halves of
- * the constants stand below: 12288 / 2^15 = 0.75 / 2, 20480 / 2^15 = 1.25 / 2, 4096 / 2^15 = 0.25 / 2. No weight is
- * further than 2 / 2^14 from the exact one.
+ * and the same with t and n exchanged from the other side. t, n and q have 15 fractional bits and weights have 14, so
+ * the code below has half of each constant: 12288 / 2^15 = 0.75 / 2, 20480 / 2^15 = 1.25 / 2, 4096 / 2^15 = 0.25 / 2.
+ * No weight is further than 2 / 2^14 from the exact one.
  */
 static void set_cubic(int phase, int16_t *out)
 {

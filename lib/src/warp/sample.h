@@ -3,8 +3,8 @@
  * What the warp's sample types share: a plane to read, and the type of a function that renders a run of samples from
  * it.
  *
- * Samples are read and written byte-wise, or by instructions without a rule of alignment: planes and rows may begin at
- * any address. Shifts of negative numbers to the right are taken to be arithmetic, as all compilers in use have it.
+ * Samples are read and written byte by byte, or by instructions that accept any alignment. So planes and rows may begin
+ * at any address. A right shift of a negative number is assumed to be arithmetic, as it is with all compilers in use.
  */
 #ifndef L1L2_WARP_SAMPLE_H
 #define L1L2_WARP_SAMPLE_H

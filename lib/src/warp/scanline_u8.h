@@ -3,10 +3,10 @@
  * Renders runs of 8-bit samples along the scanlines that they follow through the source (coords.h), in two passes: down
  * each source column to the value where the scanline crosses it, then along the scanline.
  *
- * Source: Catmull and Smith, "3-D transformations of images in scanline order", 1980. The intermediate picture of the
- * paper is here a row of columns for each output row, so nothing is lost where the paper's picture shrinks. A sample
- * takes 2 * taps products in place of taps * taps, and half of them read neighbors in memory. The kernel is sheared
- * along the scanline.
+ * Source: Catmull and Smith, "3-D transformations of images in scanline order", 1980. The paper has an intermediate
+ * picture. Here each output row has an intermediate row of its own, so no detail is lost where the paper's picture
+ * shrinks. A sample takes 2 * taps products in place of taps * taps, and half of them read neighbors in memory. The
+ * kernel is sheared along the scanline.
  *
  * Fixed point. G is the largest sum of a kernel's |weights|, 1.55 for Lanczos, 1.375 for bicubic.
  *

@@ -22,7 +22,7 @@
 
 enum {
     CACHE_LINE = 64,
-    ROWS_AHEAD = 6, /* rows from a position to what is fetched: more than the taps of this run and the next reach */
+    ROWS_AHEAD = 6, /* rows from a position to what is prefetched: beyond the taps of this run and of the next one */
     TILE_RUNS = 2,
     BAND_ROWS = 32  /* enough work for a thread, few enough rows to share a frame evenly */
 };
@@ -132,8 +132,9 @@ const char *l1l2_warp_simd(void)
     return l1l2_cpu_features() & L1L2_CPU_AVX2 ? "avx2" : "none";
 }
 
-/* Finds out whether the map moves all samples by the same whole step. It does if it moves the four corners so: along a
- * row the distance to a step is a linear function cut to a phase, and down a column it only grows or only shrinks. */
+/* Finds out whether the map moves all samples by the same whole step. It is enough to test the four corners: the
+ * distance of a position from a whole step is linear along rows and columns before it is cut to phases, so it is
+ * extreme at the corners. */
 static void find_step(PlaneJob *job)
 {
     for (int corner = 0; corner < 4; corner++) {
@@ -176,8 +177,8 @@ static void copy_band(const PlaneJob *job, int band)
     }
 }
 
-/* Source and output some rows further down are fetched while a run is rendered: tiles are too narrow for the processor
- * to predict these accesses. The address may lie outside the plane, so it is computed as a number. */
+/* While a run is rendered, source and output some rows further down are prefetched: tiles are too narrow for the
+ * processor to predict these accesses. The address may lie outside the plane, so it is computed as a number. */
 static void fetch(const PlaneJob *job, int column, int row)
 {
     const ptrdiff_t offset = (row + ROWS_AHEAD) * job->src.stride + (ptrdiff_t)column * job->layout->sample_bytes;
@@ -231,8 +232,8 @@ static void render_run(const PlaneJob *job, const L1L2WarpCells *cells, int u, i
     layout->direct_run(&job->src, job->kernel, x, y, count, dst);
 }
 
-/* Renders a band tile by tile. A tile is as wide as the first-level cache holds the source rows of a turned row. The
- * cells of its runs are the same for all rows. */
+/* Renders a band tile by tile. A tile is only so wide that the source rows which a turned output row reads fit the
+ * first-level cache. The cells of its runs are the same for all rows. */
 static void render_band(const PlaneJob *job, int band)
 {
     const int width = job->layout->width, height = job->layout->height;

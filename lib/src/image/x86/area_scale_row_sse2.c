@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The step across for SSE2: four taps of two outputs are one vector of words, pmaddwd weighs them. */
+/* The pass across for SSE2. A vector of words holds four taps of each of two outputs, and pmaddwd weighs them. */
 #include <emmintrin.h>
 
 #include "image/area_scale_row.h"

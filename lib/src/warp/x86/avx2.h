@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the direct sample types share for AVX2: a group is eight lanes of 32 bits, 8, 4 or 2 output samples of 1, 2 or
- * 3..4 components. Each half of a group, four lanes, has its taps of a row within some bytes of the source, its window.
+ * What the direct sample types share for AVX2: a group is eight lanes of 32 bits. It holds 8, 4 or 2 output samples of
+ * 1, 2 or 3..4 components. For each half of a group, four lanes, all taps of a row lie within a few bytes of the
+ * source. These bytes are called the window of that half.
  */
 #ifndef L1L2_WARP_X86_AVX2_H
 #define L1L2_WARP_X86_AVX2_H

@@ -121,8 +121,8 @@ L1L2_INLINE int row_of(const L1L2WarpScanline *scanline, int k, int i)
     return l1l2_warp_piece_position(&scanline->down[k], i) >> L1L2_WARP_PHASE_BITS;
 }
 
-/* Renders the k-th pieces: groups where all taps are in the plane, plain C before and after them. Groups may overrun
- * the pieces' end, where the next piece writes over them. */
+/* Renders the k-th pieces: groups where all taps are in the plane, plain C before and after them. A group may write
+ * beyond the pieces' end; the next piece then overwrites that. */
 L1L2_INLINE void render_piece(const L1L2WarpPlane *src, const L1L2WarpScanline *scanline, int k, uint8_t *dst,
                               const int components)
 {

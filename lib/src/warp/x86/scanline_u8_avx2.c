@@ -138,8 +138,8 @@ L1L2_INLINE __m256i group_down(const uint8_t *first, ptrdiff_t stride, const L1L
 
 /* Groups of columns, from .. end - 1 of a piece and what the last group has beyond. All taps are in the plane.
  *
- * Pointers are formed for each group, and only to its topmost taps: of no group, and of taps above the first row, a
- * pointer would lie outside the plane. */
+ * Pointers are formed group by group, and only to a group's topmost taps. A pointer for an empty range, or to a row
+ * above the first one, would lie outside the plane. */
 L1L2_INLINE void piece_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpPiece *piece,
                             int first_column, int from, int end, int16_t *values, const int taps,
                             const int components, const int crossing)
@@ -231,7 +231,8 @@ L1L2_INLINE void group_along(const L1L2WarpKernel *kernel, const Steps *steps, c
         sum_along(first[1], first[3], _mm256_unpackhi_epi16(left, right), high, taps, components)), components);
 }
 
-/* Groups may overrun a piece's end, where the next piece writes over them. Plain C renders the rest of the last one. */
+/* A group may write beyond a piece's end; the next piece then overwrites that. Plain C renders the rest of the last
+ * one. */
 L1L2_INLINE void run_along(const L1L2WarpKernel *kernel, const L1L2WarpScanline *scanline, const int16_t *values,
                            uint8_t *dst, const int taps, const int components)
 {

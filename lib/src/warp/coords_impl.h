@@ -106,9 +106,10 @@ L1L2_INLINE void run_cells(const L1L2WarpCells *cells, const double *side, int32
         at[k] = to_fixed(side[k] + cells->offset[k] * slope) + HALF_PHASE;
         step[k] = to_fixed(slope);
     }
-    at[0] += (uint64_t)cells->skipped * step[0];
-    for (int k = 0; k < cells->count; k++)
-        run_fixed(at[k], step[k], cells->from[k + 1] - cells->from[k], out + cells->from[k]);
+    for (int k = 0; k < cells->count; k++) {
+        const uint64_t skipped = k == 0 ? (uint64_t)cells->skipped * step[0] : 0;
+        run_fixed(at[k] + skipped, step[k], cells->from[k + 1] - cells->from[k], out + cells->from[k]);
+    }
 }
 
 L1L2_INLINE void mesh_run(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int v, int32_t *x, int32_t *y,

@@ -57,7 +57,7 @@ gst_l1l2_stab_alloc_decide (GstQuery * query)
     pool = gst_video_buffer_pool_new ();
   size = MAX (size, GST_VIDEO_INFO_SIZE (&info));
 
-  /* The meta describes the padding of a pool's frames. */
+  /* The video meta describes the padding of the frames of a pool. */
   config = gst_buffer_pool_get_config (pool);
   gst_buffer_pool_config_set_params (config, caps, size, least, most);
   if (gst_buffer_pool_has_option (pool, GST_BUFFER_POOL_OPTION_VIDEO_META))
@@ -89,8 +89,8 @@ gst_l1l2_stab_alloc_is_scarce (GstBuffer * buffer, guint window)
   GstParentBufferMeta *parent;
   guint i;
 
-  /* Memory of a device, such as DMABuf or a camera's, must go back soon. Read-only memory is lent: shmsrc lends parts
-   * of one area that all of its frames share. */
+  /* Memory of a device, such as DMABuf or a camera's, must go back soon. Read-only memory belongs to another owner:
+   * shmsrc, for example, lends parts of one area that all of its frames share. */
   for (i = 0; i < gst_buffer_n_memory (buffer); i++) {
     GstMemory *memory = gst_buffer_peek_memory (buffer, i);
 

@@ -50,7 +50,7 @@ gst_l1l2_stab_convert_logger (L1L2StabLogger * logger, GstL1L2StabLog * log)
   g_clear_pointer (&log->reason, g_free);
   logger->write = write_message;
   logger->cookie = log;
-  logger->max_level = L1L2STAB_LOG_ERROR;       /* at least, so that the reason is known */
+  logger->max_level = L1L2STAB_LOG_ERROR;       /* errors at least, so that the reason is known */
   for (i = 0; i < G_N_ELEMENTS (levels); i++) {
     if (levels[i].gst <= threshold)
       logger->max_level = levels[i].ours;

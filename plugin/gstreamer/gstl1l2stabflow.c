@@ -53,7 +53,7 @@ gst_l1l2_stab_flow_take_frame (GstL1L2StabFlow * flow, GstBuffer * frame)
   GstFlowReturn ret = flow->timer_flow;
 
   flow->timer_flow = GST_FLOW_OK;
-  /* An earlier push can have failed for lack of a buffer. Its frame goes first. */
+  /* An earlier push can have failed for lack of a buffer. Then its frame is still held, and goes first. */
   if (ret == GST_FLOW_OK)
     ret = ends_path ? gst_l1l2_stab_flow_drain (flow)
         : gst_l1l2_stab_flow_push_ready (flow);
@@ -161,9 +161,9 @@ render (GstL1L2StabFlow * flow, GstClockTime stream_time, GstBuffer * output)
 
 /* --- events --- */
 
-/* True if `next` gives every frame the same stream time and running time as `now` does: the segment goes on, and only
- * its end or its position is new. Running time counts back from the stop in reverse playback, so there the stop must be
- * the same too. */
+/* True if `next` gives every frame the same stream time and running time as `now` does: then the segment continues, and
+ * only its end or its position has changed. Running time counts back from the stop in reverse playback, so there the
+ * stop must be the same too. */
 static gboolean
 is_segment_update (const GstSegment * now, const GstSegment * next)
 {
@@ -251,7 +251,7 @@ gboolean
 gst_l1l2_stab_flow_take_event (GstL1L2StabFlow * flow, GstEvent * event)
 {
   /* FLUSH_START and out-of-band events come from other threads, without the stream lock, while the streaming thread
-   * works on the stream. Nothing of it may be read here. */
+   * works on the stream. So no field of the stream may be read here. */
   if (!GST_EVENT_IS_SERIALIZED (event))
     return FALSE;
 
@@ -323,8 +323,8 @@ arrival_time (GstL1L2StabFlow * flow)
   return gst_l1l2_stab_timer_now (&flow->timer);
 }
 
-/* The running time at which the oldest frame has to leave. While a push blocked, no frame could come in; upstream
- * gets a moment to deliver, as long as the sink still gets its frame in time. */
+/* The running time at which the oldest frame has to leave. While a push blocks, no frame can come in. So after a push
+ * upstream gets a moment to deliver, as long as the sink still gets its frame in time. */
 static GstClockTime
 due_time (GstL1L2StabFlow * flow)
 {

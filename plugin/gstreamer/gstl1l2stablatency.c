@@ -14,7 +14,7 @@ gst_l1l2_stab_latency_init (GstL1L2StabLatency * latency, GstElement * element)
   latency->element = element;
 }
 
-/* The frame rate, or the highest one if the rate is variable and the caps have it. */
+/* The frame rate. If it is variable: the highest one, if the caps say it. */
 static gboolean
 get_rate (const GstStructure * structure, gint * fps_n, gint * fps_d)
 {

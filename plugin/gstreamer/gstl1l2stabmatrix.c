@@ -21,7 +21,7 @@ gst_l1l2_stab_matrix_multiply (const gdouble a[9], const gdouble b[9],
   memcpy (out, product, sizeof (product));
 }
 
-/* By cofactors. The division by the last one takes out the determinant too. */
+/* By cofactors. They are divided by the last one, so the determinant cancels. */
 void
 gst_l1l2_stab_matrix_invert (const gdouble m[9], gdouble out[9])
 {

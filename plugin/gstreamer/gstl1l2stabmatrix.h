@@ -11,11 +11,11 @@ G_BEGIN_DECLS
 void gst_l1l2_stab_matrix_multiply (const gdouble a[9], const gdouble b[9],
     gdouble out[9]);
 
-/* The inverse of a matrix with a determinant that is not 0 and a last element of the inverse that is not 0, scaled so
- * that this last element is 1. `out` must not be `m`. */
+/* The inverse, scaled so that its last element is 1. Neither the determinant of `m` nor the last element of its inverse
+ * may be 0. `out` must not be `m`. */
 void gst_l1l2_stab_matrix_invert (const gdouble m[9], gdouble out[9]);
 
-/* Maps a point. FALSE: it is on or behind the horizon, and x and y are unchanged. */
+/* Maps a point. FALSE: the image of the point is at infinity or behind the camera, and x and y are unchanged. */
 gboolean gst_l1l2_stab_matrix_map_point (const gdouble m[9], gdouble * x,
     gdouble * y);
 

@@ -81,7 +81,7 @@ transform (GstBuffer * output, GstCustomMeta * meta, GstBuffer * input,
   return TRUE;
 }
 
-/* Because of the tags, an element that scales calls transform(), and one that crops, rotates or mirrors drops the
+/* The tags have two effects: an element that scales calls transform(), and one that crops, rotates or mirrors drops the
  * meta. */
 void
 gst_l1l2_stab_meta_register (void)

@@ -27,7 +27,7 @@ struct _GstL1L2StabMotionReader
   /* The frame that was asked for last. */
   gint last;                    /* its line; -1: there was none */
   GstClockTime last_time;       /* its stream time */
-  gboolean is_backward;         /* the line of the frame before it was a later one */
+  gboolean is_backward;         /* playback goes backward: the line of the frame before it is a later one */
 };
 
 static gboolean
@@ -117,7 +117,7 @@ parse_frame (gchar ** fields, GstL1L2StabMotion * line)
   if (!parse_double (fields[3], &line->quality)
       || !parse_int (fields[4], 0, G_MAXINT, &line->tracks)
       || !parse_int (fields[5], 0, G_MAXINT, &line->inliers))
-    return "has a quality, tracks or inliers that are no numbers";
+    return "has a quality, tracks or inliers that are not numbers";
   if (line->quality < 0 || line->quality > 1)
     return "has a quality that is not between 0 and 1";
   if (line->inliers > line->tracks)

@@ -138,8 +138,8 @@ append_frame (GString * text, GstClockTime time, const L1L2StabInfo * info)
 }
 
 /* False for a frame that is already in the file because the stream has gone back (a loop, reverse playback). Frames
- * that follow each other with one timestamp are different frames. In a file with times a frame without a usable one
- * cannot be found again, and the other way round. */
+ * that follow each other with one timestamp are different frames. Also false for a frame that a reader could not find:
+ * one without a usable time in a file with times, or one with a time in a file without. */
 static gboolean
 belongs_in_file (const GstL1L2StabMotionWriter * writer, GstClockTime time)
 {

@@ -128,7 +128,7 @@ install_files (GObjectClass * klass)
           NULL, SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_MOTION_OUT,
       g_param_spec_string ("motion-out", "Motion out",
-          "Text file to write the motion of each frame to that goes out. An "
+          "Text file to which the motion of each output frame is written. An "
           "existing file is replaced. NULL = write no file",
           NULL, SETTING_FLAGS));
 }
@@ -328,8 +328,8 @@ gst_l1l2_stab_settings_sample (GstL1L2StabSettings * settings,
   GST_OBJECT_UNLOCK (settings->object);
 }
 
-/* Only this value is asked of the controller. The other controlled properties hold the values of the last frame that
- * came in, which is a window later, and must keep them. */
+/* Only this property is updated by the controller. The other controlled properties hold the values of the last frame
+ * that came in, which is a window later, and must keep them. */
 gboolean
 gst_l1l2_stab_settings_sample_bypass (GstL1L2StabSettings * settings,
     GstClockTime stream_time)

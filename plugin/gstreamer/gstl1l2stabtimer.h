@@ -31,8 +31,8 @@ void gst_l1l2_stab_timer_init (GstL1L2StabTimer * timer, GstElement * element,
     void (*expire) (gpointer user_data), gpointer user_data);
 void gst_l1l2_stab_timer_clear (GstL1L2StabTimer * timer);
 
-/* Sets the running time of the next call; NONE: no call. If an earlier time was set before, the function can be called
- * at that time too. */
+/* Sets the running time of the next call; NONE: no call. If an earlier time was set before, the function can still be
+ * called at that time, too. */
 void gst_l1l2_stab_timer_set (GstL1L2StabTimer * timer, GstClockTime due);
 
 /* Running time starts to advance, or stops. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What every Check program here needs: near-equality that prints both values, and main(). */
+/* What every Check program here needs: a comparison of numbers that prints both values, and main(). */
 #ifndef CHECKX_H
 #define CHECKX_H
 
@@ -12,7 +12,7 @@
                   "%s = %.9g, expected %s = %.9g within %.3g", #actual, (double)(actual), #expected, \
                   (double)(expected), (double)(tolerance))
 
-/* Runs one suite; Check's closing line has the totals. */
+/* Runs one suite. Check's last line of output has the totals. */
 static inline int checkx_run(Suite *suite)
 {
     SRunner *runner = srunner_create(suite);

@@ -26,7 +26,7 @@ struct Synth {
 typedef struct Frame {
     const Synth *s;
     int width, height; /* pixels */
-    int t;             /* -1: what a camera sees, and no more */
+    int t;             /* -1: the camera's picture alone, without events, noise or overlay */
     SynthMoment moment;
     SynthView view;    /* of the row that is rendered */
 } Frame;
@@ -83,11 +83,7 @@ void synth_motion(const Synth *s, int t, double F[9])
     double M[9], N[9];
     synth_camera(s, t, M);
     synth_camera(s, t > 0 ? t - 1 : 0, N);
-    const double norm = N[0] * N[0] + N[3] * N[3];
-    const double c = N[0] / norm, d = -N[3] / norm; /* the inverse's rotation and scale */
-    const double x = M[2] - N[2], y = M[5] - N[5];
-    const double a = c * M[0] - d * M[3], b = d * M[0] + c * M[3];
-    memcpy(F, (double[9]){a, -b, c * x - d * y, b, a, d * x + c * y, 0.0, 0.0, 1.0}, 9 * sizeof *F);
+    synth_path_motion(M, N, F);
 }
 
 int synth_shot(const Synth *s, int t)
@@ -99,7 +95,7 @@ int synth_shot(const Synth *s, int t)
 double synth_contrast(const Synth *s, int t)
 {
     const SynthMoment m = synth_timeline_at(&s->cfg, t);
-    const double open = 1.0 - m.cover; /* less of the area, and that is all on one side */
+    const double open = 1.0 - m.cover; /* squared: less of the area is open, and all of that is on one side */
     return m.mix > 0.0 ? 0.0 : fmin(m.gain, 1.0) * (1.0 - m.white) * (1.0 - m.black) * open * open;
 }
 

@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The hand moves by so much a frame, rms, for each unit of its shake's rms; at most 2.6 times that. */
+/* Factors from a motion per frame to the rms of the hand's shake that makes it: A_FRAME from the rms of the motion,
+ * AT_MOST from its maximum, which is 2.6 times the rms. */
 #define A_FRAME (1.0 / 0.46)
 #define AT_MOST (A_FRAME / 2.6)
 

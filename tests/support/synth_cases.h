@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* The synthetic clips by which the motion and the whole library are judged: one of each kind of footage. */
+/* The synthetic clips on which the motion and the whole library are tested: one for each kind of footage. */
 #ifndef SYNTH_CASES_H
 #define SYNTH_CASES_H
 
 #include "synth.h"
 
-/* What a clip is there to show. */
+/* What a clip tests. */
 typedef enum SynthCaseKind {
     SYNTH_CASE_PLANAR, /* nothing but camera motion and noise of sigma 5 */
-    SYNTH_CASE_HOLD,   /* who holds the camera: spectra, depth, blur, rolling shutter */
+    SYNTH_CASE_HOLD,   /* how the camera is held: spectra, depth, blur, rolling shutter */
     SYNTH_CASE_MOVER,  /* moving subjects */
-    SYNTH_CASE_EVENT,  /* cuts, light, what hides the scene; all after frame 40 and over by frame 130 */
+    SYNTH_CASE_EVENT,  /* cuts, changes of light, a hidden scene; all between frames 40 and 130 */
     SYNTH_CASE_REPEAT, /* repeated and coded frames */
-    SYNTH_CASE_OVERLAY /* what never moves */
+    SYNTH_CASE_OVERLAY /* overlays that never move */
 } SynthCaseKind;
 
 typedef struct SynthCase {
@@ -27,7 +27,7 @@ extern const int synth_case_count;
 /* Aborts where there is none. */
 const SynthCase *synth_case_named(const char *name);
 
-/* The clip's config at another size of the same proportions: all that is measured in pixels goes with it. */
+/* The clip's config at another width, with the same proportions. All lengths in pixels are scaled with it. */
 SynthConfig synth_case_at(const SynthCase *c, int width);
 
 #endif

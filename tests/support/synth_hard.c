@@ -55,7 +55,7 @@ SynthHard *synth_hard_new(const SynthHardConfig *cfg)
     s->sum = synth_alloc(pixels, sizeof *s->sum);
     s->part = synth_alloc(pixels, sizeof *s->part);
     s->noise = synth_alloc(NOISE_SIZE, sizeof *s->noise);
-    for (uint64_t i = 0; i < NOISE_SIZE; i++) { /* Box and Muller */
+    for (uint64_t i = 0; i < NOISE_SIZE; i++) { /* Box-Muller transform */
         const double radius = sqrt(-2.0 * log(1.0 - synth_fraction(cfg->seed + 2 * i)));
         s->noise[i] = (int16_t)lrint(256.0 * radius * cos(2.0 * pi * synth_fraction(cfg->seed + 2 * i + 1)));
     }
@@ -87,7 +87,7 @@ static bool is_jerk(const SynthHardConfig *cfg, int t)
     return cfg->jerks > 0 && phase >= 0 && (cfg->jerk_every > 0 ? phase % cfg->jerk_every : phase) < cfg->jerks;
 }
 
-/* Where all jerks up to a time have brought the camera. The jerk of frame k is centered on the middle of its exposure;
+/* The camera's displacement by all jerks up to a time. The jerk of frame k is centered on the middle of its exposure;
  * the part of it that falls into the exposure is `jerk_px`. */
 static void add_jerks(const SynthHardConfig *cfg, double time, double *x, double *y)
 {
@@ -99,7 +99,8 @@ static void add_jerks(const SynthHardConfig *cfg, double time, double *x, double
             continue;
         const double part = smooth_step((time - k) / jerk_length + 0.5);
         *x += size * part * cos(turned), *y += size * part * sin(turned);
-        turned += pi + 1.2 * (synth_fraction(cfg->seed + (uint64_t)k) - 0.5); /* about back again */
+        /* roughly the opposite direction, so that the camera comes back */
+        turned += pi + 1.2 * (synth_fraction(cfg->seed + (uint64_t)k) - 0.5);
     }
 }
 
@@ -121,11 +122,7 @@ void synth_hard_motion(const SynthHard *s, int t, int back, double F[9])
     double M[9], N[9];
     pose(s, t, M);
     pose(s, t - back, N);
-    const double norm = N[0] * N[0] + N[3] * N[3];
-    const double c = N[0] / norm, d = -N[3] / norm; /* the inverse's rotation and scale */
-    const double x = M[2] - N[2], y = M[5] - N[5];
-    const double a = c * M[0] - d * M[3], b = d * M[0] + c * M[3];
-    memcpy(F, (double[9]){a, -b, c * x - d * y, b, a, d * x + c * y, 0.0, 0.0, 1.0}, 9 * sizeof *F);
+    synth_path_motion(M, N, F);
 }
 
 void synth_hard_blur(const SynthHard *s, int t, double *x, double *y)
@@ -148,7 +145,7 @@ static void draw_tile_row(const SynthTile *tile, const double M[9], double x, do
     }
 }
 
-/* Joints of 3 px between tiles, soft over a pixel. */
+/* Tiles with joints 3 px wide, whose edges are one pixel soft. */
 static float floor_at(double x, double y)
 {
     const double u = fabs(x / tile_px - floor(x / tile_px) - 0.5), v = fabs(y / tile_px - floor(y / tile_px) - 0.5);
@@ -177,7 +174,7 @@ static float light_at(const SynthHard *s, double time, double x, double y)
     return (float)light;
 }
 
-/* What covers the scene with a motion of its own; the rest of the row is left. */
+/* Draws the water or the head, which move by themselves, over the scene. The rest of the row is unchanged. */
 static void cover_row(const SynthHard *s, const double M[9], double time, double x, double y, int n, float *out)
 {
     const SynthHardConfig *cfg = &s->cfg;
@@ -241,7 +238,7 @@ static void draw_instant(const SynthHard *s, double time, float *out)
     }
 }
 
-/* The mean over the exposure. */
+/* The mean picture over the exposure. */
 static void expose(const SynthHard *s, int t)
 {
     const size_t pixels = (size_t)s->cfg.width * (size_t)s->cfg.height;
@@ -268,7 +265,7 @@ static void dot(const SynthHard *s, double x, double y, double radius_x, double 
         }
 }
 
-/* A word of blocks: an eighth of the width long. */
+/* Draws a word made of blocks, an eighth of the width long. */
 static void label(const SynthHard *s, uint64_t key)
 {
     const int w = s->cfg.width, h = s->cfg.height;
@@ -287,7 +284,7 @@ static double wrapped(double v, double period)
     return v - period * floor(v / period);
 }
 
-/* What lies before the scene in the shape of many small things. */
+/* Draws rain, snow, specks or labels over the scene. */
 static void scatter_things(const SynthHard *s, int t)
 {
     const double w = s->cfg.width, h = s->cfg.height, size = w / 640.0;

@@ -3,9 +3,9 @@
  * Synthetic clips in which corners fail: sudden jerks that blur single frames, low contrast, thermal cameras, repeated
  * texture, rain and snow, dense overlays, two motions, fast zoom, steps of the exposure, a dark stage. Gray, 8 bits.
  *
- * The camera and its conventions are synth.h's. A frame's exposure is the mean of at least 16 instants where the camera
- * moves by more than a pixel meanwhile, and its true motion is that of the middle of its exposure. Deterministic: the
- * same config gives the same pixels and the same truth, in any order of the frames.
+ * The camera and its conventions are synth.h's. If the camera moves by more than a pixel during a frame's exposure, the
+ * frame is the mean of at least 16 instants. Its true motion is that of the middle of its exposure. Deterministic: the
+ * same config gives the same pixels and the same truth, whatever the order of the frames.
  */
 #ifndef SYNTH_HARD_H
 #define SYNTH_HARD_H
@@ -15,7 +15,7 @@
 
 #include "synth.h"
 
-/* What is seen. */
+/* What the camera films. */
 typedef enum SynthHardScene {
     SYNTH_HARD_PLAIN = 0, /* the scene of synth.h */
     SYNTH_HARD_TILES,     /* a floor of equal tiles, 24 px a side, with faint stains */
@@ -23,11 +23,11 @@ typedef enum SynthHardScene {
     SYNTH_HARD_STAGE      /* the scene in the dark, lit by three spots that move by themselves */
 } SynthHardScene;
 
-/* What covers part of it. */
+/* What covers a part of the scene. */
 typedef enum SynthHardCover {
     SYNTH_HARD_OPEN = 0,
-    SYNTH_HARD_WATER,  /* below: another scene with a drift of its own beside the camera's motion */
-    SYNTH_HARD_HEAD,   /* an ellipse in the middle, which stays in the frame but for a sway of its own */
+    SYNTH_HARD_WATER,  /* at the bottom: another scene, which drifts in addition to the camera's motion */
+    SYNTH_HARD_HEAD,   /* an ellipse in the middle, which stays in its place in the frame and sways a little */
     SYNTH_HARD_RAIN,   /* bright streaks, 40 px a frame */
     SYNTH_HARD_SNOW,   /* bright dots, 9 px a frame */
     SYNTH_HARD_SPECKS, /* dirt on the lens: dark dots that never move */
@@ -44,11 +44,11 @@ typedef struct SynthHardConfig {
     double shake, roll;     /* as in SynthConfig */
     double zoom;            /* the camera's steady zoom: ln of the scale a frame */
     int jerk_from, jerks;   /* frames [jerk_from, jerk_from + jerks) are blurred by a jerk of the camera, each in a
-                             * direction of its own; jerk_every > 0: and again after so many frames */
+                             * direction of its own; jerk_every > 0: this recurs after so many frames */
     int jerk_every;
     double jerk_px;         /* length of the blur, px */
-    double contrast;        /* of the scene, 1 as it is, about 45 gray levels of deviation; 0 counts as 1 */
-    double levels;          /* thermal: the scene is squeezed into so many gray levels; 0: not */
+    double contrast;        /* of the scene: 1 is a standard deviation of about 45 gray levels; 0 counts as 1 */
+    double levels;          /* thermal camera: the scene is reduced to so many gray levels; 0: it is not */
     double pattern;         /* sigma of a noise that is the same in every frame, gray levels */
     double noise;           /* sigma of the noise of each frame, gray levels */
     int step_at;            /* from this frame on the gain is `step_gain`; 0: never */
@@ -88,7 +88,7 @@ extern const int synth_hard_case_count;
 /* Aborts where there is none. */
 const SynthHardCase *synth_hard_case_named(const char *name);
 
-/* A case's config at another width of the same proportions: what is measured in pixels goes with it. */
+/* A case's config at another width, with the same proportions. All lengths in pixels are scaled with it. */
 SynthHardConfig synth_hard_case_at(const SynthHardCase *c, int width);
 
 #endif

@@ -7,7 +7,7 @@
 
 static const double pi = 3.141592653589793;
 
-/* It moves in the frame: the camera's shake is not in it. */
+/* It moves in the frame, independent of the camera's shake. */
 static SynthMover disc_at(const SynthConfig *cfg, double frames)
 {
     const double size = sqrt((double)cfg->width * cfg->height), radius = size * sqrt(cfg->foreground / pi);
@@ -15,7 +15,8 @@ static SynthMover disc_at(const SynthConfig *cfg, double frames)
                         300.0, 500.0};
 }
 
-/* Into the frame from scene coordinates that drift with the camera's pan, so that things stay about. */
+/* Places a mover in the frame. (x, y) are scene coordinates that drift with the camera's pan, so that movers stay in
+ * view. */
 static void place(const SynthConfig *cfg, double frames, const double M[9], double x, double y, SynthMover *mover)
 {
     const double norm = M[0] * M[0] + M[3] * M[3];
@@ -24,7 +25,7 @@ static void place(const SynthConfig *cfg, double frames, const double M[9], doub
     mover->y = (M[0] * dy - M[3] * dx) / norm;
 }
 
-/* Of the frame's proportions; it goes to and fro by a tenth of the width. */
+/* It has the frame's proportions, and moves to and fro by a tenth of the width. */
 static SynthMover subject_at(const SynthConfig *cfg, double frames, const double M[9])
 {
     const double reach = 0.05 * cfg->width, extent = sqrt(cfg->foreground / pi);

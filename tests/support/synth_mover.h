@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Moving subjects: textured ellipses before the scene. They move over the frame, and do not turn. */
+/* Moving subjects: textured ellipses in front of the scene. They move over the frame and do not rotate. */
 #ifndef SYNTH_MOVER_H
 #define SYNTH_MOVER_H
 
@@ -11,7 +11,7 @@ typedef struct SynthMover {
     double texture_x, texture_y; /* of its center in the scene's tile, px */
 } SynthMover;
 
-/* Where the foreground is for a camera at M, at a time in frames. Returns how many there are. */
+/* Sets the movers for a camera at M, at a time in frames. Returns their number. */
 int synth_movers_at(const SynthConfig *cfg, double frames, const double M[9], SynthMover mover[SYNTH_MAX_MOVERS]);
 
 #endif

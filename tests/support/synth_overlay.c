@@ -23,7 +23,8 @@ static bool lit(int digit, int x, int y)
            (x == 3 && ((upper && y > 0 && on & 4u) || (lower && y < 6 && on & 32u)));
 }
 
-/* White digits on a black box, in the picture's upper left; -1 where it is not. x, y: px from that corner. */
+/* The level of the timecode, white digits on a black box in the upper left corner of the picture; -1 outside it. x, y:
+ * px from that corner. */
 static int timecode_level(const SynthConfig *cfg, int t, double x, double y)
 {
     const double block = fmax(cfg->height / 160.0, 1.0), left = 4.0 * block;
@@ -36,7 +37,8 @@ static int timecode_level(const SynthConfig *cfg, int t, double x, double y)
     return lit(digit % 10, column % CELL_W - 1, row - 1) ? WHITE : BLACK;
 }
 
-/* Blocks of light and dark, as dense as letters, in the picture's lower right. x, y: px from that corner. */
+/* The level of the logo, light and dark blocks as dense as letters in the lower right corner; -1 outside it. x, y: px
+ * from that corner. */
 static int logo_level(const SynthConfig *cfg, double x, double y)
 {
     const double block = fmax(cfg->height / 120.0, 1.0), margin = 4.0 * block;

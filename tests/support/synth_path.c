@@ -17,7 +17,7 @@ typedef struct Tone {
 
 static const double two_pi = 6.283185307179586;
 
-/* The body falls with each step, and leans from foot to foot: half as often. */
+/* A walker's body falls with each step, and leans from foot to foot half as often. */
 static const Tone steps[TONES] = {{0.4, 0.4}, {2.0, 1.0}, {4.0, 0.4}, {6.0, 0.15}, {8.0, 0.05}};
 static const Tone leans[TONES] = {{0.3, 0.5}, {1.0, 1.0}, {2.0, 0.4}, {3.0, 0.25}, {5.0, 0.1}};
 static const Tone standing[TONES] = {{0.1, 1.0}, {0.2, 0.5}, {0.4, 0.25}, {0.8, 0.125}, {1.6, 0.06}, {3.2, 0.03},
@@ -30,7 +30,8 @@ static uint64_t key_of(const SynthConfig *cfg, int channel)
     return synth_hash(cfg->seed) + (uint64_t)(16 * channel);
 }
 
-/* The tones of a hold; `spread`: whether the seed moves each by itself, or only all together. */
+/* The tones of a hold. *spread: whether the seed shifts the frequency of each tone by itself, or of all tones
+ * together. */
 static int tones_of(SynthHold hold, int channel, Tone tone[TONES], bool *spread)
 {
     static const double hand_hz[] = {0.6, 1.1, 1.9, 3.1, 4.7, 7.0};
@@ -38,7 +39,7 @@ static int tones_of(SynthHold hold, int channel, Tone tone[TONES], bool *spread)
                         : hold == SYNTH_VEHICLE ? driving
                         : channel == CHANNEL_Y || channel == CHANNEL_ZOOM ? steps : leans;
     int count = 0;
-    *spread = hold != SYNTH_WALK; /* harmonics stay harmonics */
+    *spread = hold != SYNTH_WALK; /* so that harmonics stay harmonics */
     if (hold == SYNTH_HAND)
         for (; count < 6; count++)
             tone[count] = (Tone){hand_hz[count], 1.0 / sqrt(hand_hz[count])};
@@ -81,4 +82,13 @@ void synth_path_pose(const SynthConfig *cfg, double frames, double M[9])
     const double y = cfg->pan_y * frames + cfg->shake * shake(cfg, CHANNEL_Y, frames) +
                      cfg->vibration * vibration(cfg, CHANNEL_Y, frames);
     memcpy(M, (double[9]){a, -b, x, b, a, y, 0.0, 0.0, 1.0}, 9 * sizeof *M);
+}
+
+void synth_path_motion(const double M[9], const double N[9], double F[9])
+{
+    const double norm = N[0] * N[0] + N[3] * N[3];
+    const double c = N[0] / norm, d = -N[3] / norm; /* the inverse's rotation and scale */
+    const double x = M[2] - N[2], y = M[5] - N[5];
+    const double a = c * M[0] - d * M[3], b = d * M[0] + c * M[3];
+    memcpy(F, (double[9]){a, -b, c * x - d * y, b, a, d * x + c * y, 0.0, 0.0, 1.0}, 9 * sizeof *F);
 }

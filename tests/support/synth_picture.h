@@ -26,11 +26,12 @@ SynthLayout synth_layout_of(L1L2StabFormat format);
 SynthAxis synth_axis_x(const SynthLayout *layout, int plane, L1L2StabChromaSite site);
 SynthAxis synth_axis_y(const SynthLayout *layout, int plane, L1L2StabChromaSite site);
 
-/* The span's samples into their places in a row of a planar format: the plane's only component, or the `which`th. */
+/* Writes the span's samples into a row of a planar format, as component number `which` of the plane. */
 void synth_store(const SynthLayout *layout, int plane, int which, const SynthSpan *span, const uint16_t *code,
                  uint8_t *row);
 
-/* Y, U and V of one span of 8 bits into a packed format, full-range BT.601: the gray of R, G, B is the luma again. */
+/* Writes Y, U and V of one span of 8 bits into a packed RGB format, by full-range BT.601: the gray of R, G, B is the
+ * luma. */
 void synth_store_packed(const SynthLayout *layout, const SynthSpan *span, uint16_t code[3][SYNTH_SPAN], uint8_t *row);
 
 #endif

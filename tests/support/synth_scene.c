@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Noise of equal strength in every octave, as in natural pictures, made coarse to fine: each level is the finer
- * sampling of the cubic B-spline of the level before it (two-scale relation), plus new noise. Shapes with soft edges
- * are drawn over it: they give the corners. A lookup's positions are 32 bit fixed-point numbers whose overflow is the
- * tile's repetition.
+ * The scene is noise with equal power in every octave, as in natural pictures. It is made from coarse to fine: each
+ * level is the cubic B-spline of the level before it, sampled twice as finely (two-scale relation), plus new noise.
+ * Shapes with soft edges are drawn over it, so that there are corners. Positions in a lookup are 32-bit fixed-point
+ * numbers: where they overflow, the tile repeats.
  */
 #include "synth_scene.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The scene of the synthetic clips: periodic tiles (luma, two of chroma, and where nearer things hide farther ones),
- * band-limited so that bilinear lookup is close to exact.
+ * The scene of the synthetic clips: periodic tiles for luma, for the two chroma components, and for the mask of the
+ * nearer layers. They are band-limited, so that bilinear lookup is close to exact.
  */
 #ifndef SYNTH_SCENE_H
 #define SYNTH_SCENE_H
@@ -13,7 +13,7 @@
 #include "synth.h"
 #include "synth_span.h"
 
-/* A square periodic picture of 2^log2_size texels a side that covers SYNTH_SCENE_PX. */
+/* A square periodic picture that covers SYNTH_SCENE_PX with 2^log2_size texels a side. */
 typedef struct SynthTile {
     int log2_size;
     uint16_t *texel; /* gray level x 128 */
@@ -31,10 +31,10 @@ void synth_scene_clear(SynthScene *scene);
 /* n samples of a tile, gray levels x SYNTH_DEEP, from scene position (x, y) px on, in steps of (dx, dy) px. */
 void synth_tile_lookup(const SynthTile *tile, double x, double y, double dx, double dy, int n, uint16_t *deep);
 
-/* An equally distributed 64 bit number for each key (splitmix64's finalizer). */
+/* A uniformly distributed 64-bit number for each key (splitmix64's finalizer). */
 uint64_t synth_hash(uint64_t key);
 
-/* One of [0, 1) for each key. */
+/* A uniformly distributed number in [0, 1) for each key. */
 double synth_fraction(uint64_t key);
 
 /* calloc that aborts when out of memory. */

@@ -17,13 +17,13 @@ void synth_sensor_init(SynthSensor *sensor, const SynthConfig *cfg)
         return;
     sensor->coarse = synth_alloc(NOISE_SIZE + SYNTH_SPAN, sizeof *sensor->coarse);
     sensor->fine = synth_alloc(NOISE_SIZE + SYNTH_SPAN, sizeof *sensor->fine);
-    for (uint64_t i = 0; i < NOISE_SIZE; i++) { /* Box and Muller */
+    for (uint64_t i = 0; i < NOISE_SIZE; i++) { /* Box-Muller transform */
         const double radius = sqrt(-2.0 * log(1.0 - synth_fraction(cfg->seed + 2 * i)));
         const double v = cfg->noise * radius * cos(6.283185307179586 * synth_fraction(cfg->seed + 2 * i + 1));
         sensor->coarse[i] = (int8_t)lrint(fmin(fmax(v, -127.0), 127.0));
         sensor->fine[i] = (int16_t)lrint(256.0 * fmin(fmax(v, -127.0), 127.0));
     }
-    for (int i = 0; i < SYNTH_SPAN; i++) { /* so that a span's noise lies in one piece wherever it starts */
+    for (int i = 0; i < SYNTH_SPAN; i++) { /* so that a span's noise is contiguous wherever it starts */
         sensor->coarse[NOISE_SIZE + i] = sensor->coarse[i];
         sensor->fine[NOISE_SIZE + i] = sensor->fine[i];
     }
@@ -40,7 +40,7 @@ static uint16_t clamp(double v)
     return (uint16_t)fmin(fmax(v + 0.5, 0.0), 255.0 * SYNTH_DEEP);
 }
 
-/* From the right; its edge is far out of focus. */
+/* Covers the lens from the right, with an edge that is far out of focus. */
 static void cover(const SynthMoment *m, int width, const SynthSpan *span, uint16_t *deep)
 {
     const double softness = 0.3;
@@ -66,7 +66,7 @@ void synth_sensor_expose(const SynthMoment *m, int width, const SynthSpan *span,
         deep[i] = clamp(contrast * deep[i] + brightness * SYNTH_DEEP);
 }
 
-/* As a coder does that sends each block anew: all levels in steps, and the steps elsewhere each time. */
+/* Like a coder that codes each block anew: levels are rounded to steps, with another offset in each block and frame. */
 static void code_levels(const SynthSensor *sensor, int t, int depth, const SynthSpan *span, int *level)
 {
     const double step = sensor->coding * (1 << (depth - 8));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* From what the lens shows to code values: exposure, fades, what covers the lens, rounding, noise, coding. */
+/* Turns the picture behind the lens into code values: exposure, fades, a covered lens, rounding, noise, coding. */
 #ifndef SYNTH_SENSOR_H
 #define SYNTH_SENSOR_H
 
@@ -16,10 +16,10 @@ typedef struct SynthSensor {
 void synth_sensor_init(SynthSensor *sensor, const SynthConfig *cfg);
 void synth_sensor_clear(SynthSensor *sensor);
 
-/* What the moment's events do to the light, in place. */
+/* Applies the moment's events to the light, in place. */
 void synth_sensor_expose(const SynthMoment *m, int width, const SynthSpan *span, uint16_t *deep);
 
-/* Code values of `depth` bits, 8..16, of frame t. grain: whose noise. */
+/* Writes the code values of `depth` bits, 8..16, of frame t. grain: number of the frame whose noise is used. */
 void synth_sensor_read(const SynthSensor *sensor, int t, int grain, int depth, const SynthSpan *span,
                        const uint16_t *deep, uint16_t *code);
 

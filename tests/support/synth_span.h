@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* A run of samples of one row of a plane: what the stages of the renderer hand on. */
+/* A run of samples of one row of a plane. The stages of the renderer pass it from one to the next. */
 #ifndef SYNTH_SPAN_H
 #define SYNTH_SPAN_H
 
 enum {
     SYNTH_SPAN = 256, /* samples, at most */
-    SYNTH_DEEP = 64   /* samples are worked on as gray levels x 64, 14 bits */
+    SYNTH_DEEP = 64   /* samples in the renderer are gray levels x 64, 14 bits */
 };
 
 typedef struct SynthSpan {

@@ -8,7 +8,7 @@ static double clamp01(double v)
     return fmin(fmax(v, 0.0), 1.0);
 }
 
-/* A hand comes from one side, stays, and goes back. */
+/* The part of the lens that a hand covers. It comes from one side, stays, and goes back. */
 static double covered(int i, int frames)
 {
     const int slide = frames / 4 < 4 ? frames / 4 : 4;
@@ -16,7 +16,7 @@ static double covered(int i, int frames)
     return clamp01((from_end + 1.0) / (slide + 1.0));
 }
 
-/* The events are applied in their order; i: frames since the event's first one. */
+/* Applies one event; events are applied in their order. i: frames since the event's first one. */
 static void apply(const SynthConfig *cfg, const SynthEvent *e, int i, SynthMoment *m)
 {
     const bool during = i >= 0 && i < e->frames, after = i >= e->frames;

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* What a frame of the clip shows: when it was taken, of which shot, and what was done to it. */
+/* What a frame of the clip shows: the time at which it was taken, its shot, and the events that apply to it. */
 #ifndef SYNTH_TIMELINE_H
 #define SYNTH_TIMELINE_H
 
 #include "synth.h"
 
 typedef struct SynthMoment {
-    double time;  /* of the camera, frames */
+    double time;  /* at which the camera took it, frames */
     int taken;    /* the number of the frame that this one repeats, or its own */
     int shot;
     double mix;   /* part of the next shot in the picture, [0, 1) */
     double gain;
-    double white, black; /* how far towards these, [0, 1] */
+    double white, black; /* part of white or black in the picture, [0, 1] */
     double cover; /* part of the lens that is covered, [0, 1] */
     double blur;  /* px */
 } SynthMoment;

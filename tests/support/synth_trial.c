@@ -7,7 +7,7 @@
 
 #include "synth_scene.h"
 
-/* Below it, under some noise, one cannot see what the picture does. */
+/* Below this contrast, with some noise, a viewer cannot see how the picture moves. */
 static const double min_contrast = 0.05;
 
 static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A synthetic clip through the whole library, and its truth against what was measured and made of it. */
+/* Runs a synthetic clip through the whole library, and compares the measured motion and the output with the truth. */
 #ifndef SYNTH_TRIAL_H
 #define SYNTH_TRIAL_H
 
@@ -9,16 +9,16 @@ typedef struct SynthTrial {
     int frames;
     L1L2StabInfo *info;  /* of each frame */
     double *error;       /* of each F_t, px: rms over the frame's corners; 0 for a path's first frame */
-    double *bias;        /* how far off the path is, px: at the corners, since the shot began */
-    double *contrast;    /* what is left of one scene's, [0, 1] */
+    double *bias;        /* accumulated error of the path since the shot began, px: rms over the corners */
+    double *contrast;    /* of each frame, as by synth_contrast() */
     double rms, worst;   /* of `error`, over the frames whose motion was measured */
     double drift;        /* `bias` at the end */
-    double quality;      /* lowest of those frames */
+    double quality;      /* the lowest of those frames */
     int lost;            /* frames whose motion was not measured */
     int starts;          /* paths that start after the first frame */
-    double jitter_in, jitter_out; /* rms acceleration of the true camera, and of where the crop windows truly look, px:
-                                   * over the frame's corners, within shots, where there is contrast enough to
-                                   * see what the picture does */
+    double jitter_in, jitter_out; /* rms acceleration of the true camera and of the true pose of the crop windows, px:
+                                   * over the frame's corners, within shots, where there is enough contrast to see what
+                                   * the picture does */
     double stage_ms[L1L2STAB_STAGE_COUNT]; /* a frame */
 } SynthTrial;
 
@@ -28,7 +28,7 @@ SynthTrial synth_trial_new(const SynthConfig *cfg, int frames);
 SynthTrial synth_trial_in(const SynthConfig *cfg, int frames, L1L2StabFormat format);
 void synth_trial_free(SynthTrial *trial);
 
-/* How far apart two motions of a frame put its corners: rms, px. */
+/* The distance between a frame's corners as moved by A and as moved by B: rms, px. */
 double synth_trial_distance(const SynthConfig *cfg, const double A[9], const double B[9]);
 
 #endif

@@ -10,7 +10,7 @@ enum { NEAR_LAYERS = 2 };
 
 typedef struct Row {
     const SynthView *view;
-    const SynthEye *eye;
+    const SynthViewpoint *viewpoint;
     const SynthScene *scene;
     const SynthTile *tile;
     double x, y, step;
@@ -35,42 +35,42 @@ void synth_view_aim(SynthView *view, const SynthConfig *cfg, double frames, doub
     double length = blur;
     if (cfg->exposure > 0.0)
         length = fmax(length, smear(cfg, frames));
-    double x[SYNTH_VIEW_MAX_EYES], y[SYNTH_VIEW_MAX_EYES], mean_x = 0.0, mean_y = 0.0;
+    double x[SYNTH_MAX_VIEWPOINTS], y[SYNTH_MAX_VIEWPOINTS], mean_x = 0.0, mean_y = 0.0;
     view->parallax = cfg->parallax;
-    view->eyes = (int)fmin(1.0 + ceil(length), SYNTH_VIEW_MAX_EYES);
-    for (int k = 0; k < view->eyes; k++) { /* the aperture's points lie on a spiral, equally dense */
-        const double radius = 0.5 * blur * sqrt((k + 0.5) / view->eyes), angle = 2.399963229728653 * k;
+    view->viewpoints = (int)fmin(1.0 + ceil(length), SYNTH_MAX_VIEWPOINTS);
+    for (int k = 0; k < view->viewpoints; k++) { /* the aperture's points lie on a spiral, evenly spread */
+        const double radius = 0.5 * blur * sqrt((k + 0.5) / view->viewpoints), angle = 2.399963229728653 * k;
         x[k] = radius * cos(angle), y[k] = radius * sin(angle);
-        mean_x += x[k] / view->eyes, mean_y += y[k] / view->eyes;
+        mean_x += x[k] / view->viewpoints, mean_y += y[k] / view->viewpoints;
     }
-    for (int k = 0; k < view->eyes; k++) {
-        SynthEye *eye = &view->eye[k];
-        const double time = frames + cfg->exposure * ((k + 0.5) / view->eyes - 0.5);
-        synth_path_pose(cfg, time, eye->M);
-        eye->M[2] += x[k] - mean_x; /* out of focus, things stay in their place */
-        eye->M[5] += y[k] - mean_y;
-        eye->movers = synth_movers_at(cfg, time, eye->M, eye->mover);
+    for (int k = 0; k < view->viewpoints; k++) {
+        SynthViewpoint *viewpoint = &view->viewpoint[k];
+        const double time = frames + cfg->exposure * ((k + 0.5) / view->viewpoints - 0.5);
+        synth_path_pose(cfg, time, viewpoint->M);
+        viewpoint->M[2] += x[k] - mean_x; /* less the mean, so that blur does not shift the picture */
+        viewpoint->M[5] += y[k] - mean_y;
+        viewpoint->movers = synth_movers_at(cfg, time, viewpoint->M, viewpoint->mover);
     }
 }
 
 void synth_view_aim_at(SynthView *view, const SynthConfig *cfg, const double M[9])
 {
     view->parallax = cfg->parallax;
-    view->eyes = 1;
-    view->eye[0].movers = 0;
-    memcpy(view->eye[0].M, M, sizeof view->eye[0].M);
+    view->viewpoints = 1;
+    view->viewpoint[0].movers = 0;
+    memcpy(view->viewpoint[0].M, M, sizeof view->viewpoint[0].M);
 }
 
-/* Samples [i0, i1) of a tile through M, its translation `reach` times as far. */
+/* Samples [i0, i1) of a tile through M, whose translation is multiplied by `reach`. */
 static void look(const Row *row, const SynthTile *tile, double reach, double x, double y, int i0, int i1,
                  uint16_t *deep)
 {
-    const double *M = row->eye->M, at = row->x + i0 * row->step;
+    const double *M = row->viewpoint->M, at = row->x + i0 * row->step;
     synth_tile_lookup(tile, M[0] * at + M[1] * row->y + M[2] * reach + x, M[3] * at + M[4] * row->y + M[5] * reach + y,
                       M[0] * row->step, M[3] * row->step, i1 - i0, deep);
 }
 
-/* The scene, and nearer layers where they are. */
+/* Draws the scene, and the nearer layers over it where their mask says so. */
 static void draw_scene(const Row *row, int i0, int i1, uint16_t *deep)
 {
     uint16_t near[SYNTH_SPAN], mask[SYNTH_SPAN];
@@ -91,7 +91,7 @@ static int clamp(double v, int low, int high)
     return v < low ? low : v > high ? high : (int)v;
 }
 
-/* Samples [i0, i1), with the movers before k: the last is the nearest. */
+/* Draws samples [i0, i1) with the first k movers. The last mover is the nearest. */
 static void draw_movers(const Row *row, int k, int i0, int i1, uint16_t *deep)
 {
     if (i0 >= i1)
@@ -100,7 +100,7 @@ static void draw_movers(const Row *row, int k, int i0, int i1, uint16_t *deep)
         draw_scene(row, i0, i1, deep);
         return;
     }
-    const SynthMover *m = &row->eye->mover[k - 1];
+    const SynthMover *m = &row->viewpoint->mover[k - 1];
     const double y = row->y - m->y, chord = m->half_h * m->half_h - y * y;
     int from = i1, to = i1; /* the part that it covers */
     if (chord > 0.0) {
@@ -118,20 +118,20 @@ static void draw_movers(const Row *row, int k, int i0, int i1, uint16_t *deep)
 void synth_view_draw(const SynthView *view, const SynthScene *scene, const SynthSpan *span, uint16_t *deep)
 {
     const SynthTile *tile = span->component ? &scene->chroma[span->component - 1] : &scene->luma;
-    Row row = {view, view->eye, scene, tile, span->x, span->y, span->step};
-    const uint32_t eyes = (uint32_t)view->eyes;
+    Row row = {view, view->viewpoint, scene, tile, span->x, span->y, span->step};
+    const uint32_t viewpoints = (uint32_t)view->viewpoints;
     uint16_t one[SYNTH_SPAN];
     uint32_t sum[SYNTH_SPAN] = {0};
-    if (eyes == 1) {
-        draw_movers(&row, row.eye->movers, 0, span->count, deep);
+    if (viewpoints == 1) {
+        draw_movers(&row, row.viewpoint->movers, 0, span->count, deep);
         return;
     }
-    for (uint32_t k = 0; k < eyes; k++) {
-        row.eye = &view->eye[k];
-        draw_movers(&row, row.eye->movers, 0, span->count, one);
+    for (uint32_t k = 0; k < viewpoints; k++) {
+        row.viewpoint = &view->viewpoint[k];
+        draw_movers(&row, row.viewpoint->movers, 0, span->count, one);
         for (int i = 0; i < span->count; i++)
             sum[i] += one[i];
     }
     for (int i = 0; i < span->count; i++)
-        deep[i] = (uint16_t)((sum[i] + eyes / 2) / eyes);
+        deep[i] = (uint16_t)((sum[i] + viewpoints / 2) / viewpoints);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the lens shows of a scene: its layers and what moves before them, averaged over the time that the shutter is
- * open and over the lens's aperture.
+ * The picture behind the lens: the layers of a scene and the movers in front of them, averaged over the time that the
+ * shutter is open and over the aperture.
  */
 #ifndef SYNTH_VIEW_H
 #define SYNTH_VIEW_H
@@ -9,25 +9,25 @@
 #include "synth_mover.h"
 #include "synth_scene.h"
 
-enum { SYNTH_VIEW_MAX_EYES = 24 };
+enum { SYNTH_MAX_VIEWPOINTS = 24 };
 
-/* The camera at one instant. */
-typedef struct SynthEye {
+/* The camera at one instant of the exposure, through one point of its aperture. */
+typedef struct SynthViewpoint {
     double M[9];
     SynthMover mover[SYNTH_MAX_MOVERS];
     int movers;
-} SynthEye;
+} SynthViewpoint;
 
 typedef struct SynthView {
     double parallax;
-    SynthEye eye[SYNTH_VIEW_MAX_EYES]; /* their mean is seen */
-    int eyes;
+    SynthViewpoint viewpoint[SYNTH_MAX_VIEWPOINTS]; /* the picture is the mean over all */
+    int viewpoints;
 } SynthView;
 
-/* From the camera's path at a time in frames; blur: diameter of a point out of focus, px. */
+/* Sets the viewpoints of the camera's path at a time in frames. blur: diameter of a point out of focus, px. */
 void synth_view_aim(SynthView *view, const SynthConfig *cfg, double frames, double blur);
 
-/* From M, and nothing moves before the scene. */
+/* Sets one viewpoint, M, without movers. */
 void synth_view_aim_at(SynthView *view, const SynthConfig *cfg, const double M[9]);
 
 void synth_view_draw(const SynthView *view, const SynthScene *scene, const SynthSpan *span, uint16_t *deep);

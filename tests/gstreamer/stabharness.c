@@ -51,6 +51,22 @@ stab_harness_free (GstHarness * h)
   gst_harness_teardown (h);
 }
 
+void
+stab_play_to_end (GstElement * pipeline, const gchar * what)
+{
+  GstBus *bus = gst_element_get_bus (pipeline);
+  GstMessage *message;
+
+  fail_if (gst_element_set_state (pipeline, GST_STATE_PLAYING) ==
+      GST_STATE_CHANGE_FAILURE, "%s does not start", what);
+  message = gst_bus_timed_pop_filtered (bus, 40 * GST_SECOND,
+      GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
+  fail_unless (message && GST_MESSAGE_TYPE (message) == GST_MESSAGE_EOS,
+      "%s: %" GST_PTR_FORMAT, what, message);
+  gst_message_unref (message);
+  gst_object_unref (bus);
+}
+
 GstMessage *
 stab_harness_message (GstHarness * h, GstMessageType type)
 {

@@ -26,6 +26,10 @@ GstHarness *stab_harness_new (const gchar * caps, const gchar * property, ...)
 /* Frees the harness and the bus. */
 void stab_harness_free (GstHarness * h);
 
+/* Plays a pipeline to the end of its stream, within 40 seconds, and leaves it in the state PLAYING. `what` is printed if
+ * that fails. */
+void stab_play_to_end (GstElement * pipeline, const gchar * what);
+
 /* The next message of this type, or NULL; does not wait. */
 GstMessage *stab_harness_message (GstHarness * h, GstMessageType type);
 

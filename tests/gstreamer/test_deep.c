@@ -34,9 +34,7 @@ run (const gchar * description, guint * n_frames)
   GError *error = NULL;
   GstElement *pipeline = gst_parse_launch (description, &error);
   GstElement *look;
-  GstMessage *message;
   GstCaps *caps;
-  GstBus *bus;
   GstPad *pad;
 
   fail_unless (error == NULL, "%s", description);
@@ -45,16 +43,9 @@ run (const gchar * description, guint * n_frames)
   pad = gst_element_get_static_pad (look, "src");
   gst_pad_add_probe (pad, GST_PAD_PROBE_TYPE_BUFFER, count_buffer, n_frames,
       NULL);
-  bus = gst_element_get_bus (pipeline);
-  gst_element_set_state (pipeline, GST_STATE_PLAYING);
-  message = gst_bus_timed_pop_filtered (bus, 40 * GST_SECOND,
-      GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
-  fail_unless (message && GST_MESSAGE_TYPE (message) == GST_MESSAGE_EOS,
-      "%s: %" GST_PTR_FORMAT, description, message);
-  gst_message_unref (message);
+  stab_play_to_end (pipeline, description);
   caps = gst_pad_get_current_caps (pad);
   gst_element_set_state (pipeline, GST_STATE_NULL);
-  gst_object_unref (bus);
   gst_object_unref (pad);
   gst_object_unref (look);
   gst_object_unref (pipeline);

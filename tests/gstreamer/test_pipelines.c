@@ -23,8 +23,6 @@ G_GNUC_PRINTF (1, 2);
 {
   GError *error = NULL;
   GstElement *pipeline;
-  GstMessage *message;
-  GstBus *bus;
   gchar *description;
   va_list args;
 
@@ -35,15 +33,8 @@ G_GNUC_PRINTF (1, 2);
   fail_unless (error == NULL, "%s: %s", description,
       error ? error->message : "");
 
-  bus = gst_element_get_bus (pipeline);
-  gst_element_set_state (pipeline, GST_STATE_PLAYING);
-  message = gst_bus_timed_pop_filtered (bus, 40 * GST_SECOND,
-      GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
-  fail_unless (message && GST_MESSAGE_TYPE (message) == GST_MESSAGE_EOS,
-      "%s: %" GST_PTR_FORMAT, description, message);
-  gst_message_unref (message);
+  stab_play_to_end (pipeline, description);
   gst_element_set_state (pipeline, GST_STATE_NULL);
-  gst_object_unref (bus);
   gst_object_unref (pipeline);
   g_free (description);
 }
@@ -95,14 +86,10 @@ times_of (const gchar * file)
       "h264parse ! avdec_h264 ! fakesink name=sink signal-handoffs=true", file);
   GstElement *pipeline = gst_parse_launch (description, NULL);
   GstElement *sink = gst_bin_get_by_name (GST_BIN (pipeline), "sink");
-  GstBus *bus = gst_element_get_bus (pipeline);
 
   g_signal_connect (sink, "handoff", G_CALLBACK (note_time), times);
-  gst_element_set_state (pipeline, GST_STATE_PLAYING);
-  gst_message_unref (gst_bus_timed_pop_filtered (bus, 30 * GST_SECOND,
-          GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+  stab_play_to_end (pipeline, description);
   gst_element_set_state (pipeline, GST_STATE_NULL);
-  gst_object_unref (bus);
   gst_object_unref (sink);
   gst_object_unref (pipeline);
   g_free (description);

@@ -44,20 +44,6 @@ compare (gconstpointer a, gconstpointer b)
   return x < y ? -1 : x > y;
 }
 
-static void
-run (GstElement * pipeline)
-{
-  GstBus *bus = gst_element_get_bus (pipeline);
-  GstMessage *message;
-
-  gst_element_set_state (pipeline, GST_STATE_PLAYING);
-  message = gst_bus_timed_pop_filtered (bus, 40 * GST_SECOND,
-      GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
-  fail_unless (message && GST_MESSAGE_TYPE (message) == GST_MESSAGE_EOS);
-  gst_message_unref (message);
-  gst_object_unref (bus);
-}
-
 static GstClockTime
 latency_of (GstElement * pipeline, const gchar * name)
 {
@@ -98,7 +84,7 @@ GST_START_TEST (the_measured_latency_is_the_reported_one_within_a_frame)
 
   measured = g_array_new (FALSE, FALSE, sizeof (guint64));
   gst_debug_add_log_function (read_tracer, NULL, NULL);
-  run (pipeline);
+  stab_play_to_end (pipeline, "the live source");
   fail_unless_equals_uint64 (latency_of (pipeline, "stab"),
       latency_of (pipeline, "source") + ours);
   gst_element_set_state (pipeline, GST_STATE_NULL);
@@ -145,7 +131,7 @@ GST_START_TEST (a_source_at_half_its_nominal_rate_is_not_late_at_the_sink)
       "capssetter caps=video/x-raw,framerate=20/1 ! l1l2stab window=20 ! "
       "fakesink name=sink sync=true max-lateness=0", NULL);
 
-  run (pipeline);
+  stab_play_to_end (pipeline, "the live source");
   assert_nothing_was_late (pipeline, 40);
   gst_element_set_state (pipeline, GST_STATE_NULL);
   gst_object_unref (pipeline);
@@ -176,7 +162,7 @@ GST_START_TEST (a_source_with_a_gap_of_three_seconds_is_not_late_at_the_sink)
 
   gst_pad_add_probe (pad, GST_PAD_PROBE_TYPE_BUFFER, leave_a_gap, &n_frames,
       NULL);
-  run (pipeline);
+  stab_play_to_end (pipeline, "the live source");
   fail_unless_equals_int (n_frames, 80);
   assert_nothing_was_late (pipeline, n_frames);
   gst_element_set_state (pipeline, GST_STATE_NULL);

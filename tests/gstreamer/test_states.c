@@ -4,23 +4,6 @@
 
 #define WINDOW 8
 
-/* Runs to the end of the stream and counts the frames. */
-static void
-run_to_end (GstElement * pipeline)
-{
-  GstBus *bus = gst_element_get_bus (pipeline);
-  GstMessage *message;
-
-  fail_if (gst_element_set_state (pipeline, GST_STATE_PLAYING) ==
-      GST_STATE_CHANGE_FAILURE);
-  message = gst_bus_timed_pop_filtered (bus, 30 * GST_SECOND,
-      GST_MESSAGE_EOS | GST_MESSAGE_ERROR);
-  fail_unless (message && GST_MESSAGE_TYPE (message) == GST_MESSAGE_EOS,
-      "%" GST_PTR_FORMAT, message);
-  gst_message_unref (message);
-  gst_object_unref (bus);
-}
-
 static void
 count (GstElement * sink, GstBuffer * buffer, GstPad * pad, gpointer user_data)
 {
@@ -37,7 +20,7 @@ GST_START_TEST (a_hundred_restarts_give_all_frames_each_time)
 
   g_signal_connect (sink, "handoff", G_CALLBACK (count), &n);
   for (round = 1; round <= 100; round++) {
-    run_to_end (pipeline);
+    stab_play_to_end (pipeline, "the test source");
     fail_unless_equals_int (n, 12 * round);
     fail_unless_equals_int (gst_element_set_state (pipeline, GST_STATE_NULL),
         GST_STATE_CHANGE_SUCCESS);
@@ -63,7 +46,7 @@ GST_START_TEST (a_seek_gives_all_frames_from_its_target_on)
   fail_unless (gst_element_seek (pipeline, 1, GST_FORMAT_TIME,
           GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_ACCURATE, GST_SEEK_TYPE_SET,
           GST_SECOND, GST_SEEK_TYPE_SET, 3 * GST_SECOND));
-  run_to_end (pipeline);
+  stab_play_to_end (pipeline, "the test source");
   fail_unless_equals_int (n, 20);
   gst_element_set_state (pipeline, GST_STATE_NULL);
   gst_object_unref (sink);

@@ -9,29 +9,10 @@
 #include <l1l2stab/l1l2stab.h>
 
 #include "checkx.h"
-#include "common/mem.h"
+#include "memory_fixture.h"
 #include "synth.h"
 
 enum { FRAMES = 40 };
-
-static int countdown, alive;
-
-static void *counting_alloc(size_t count, size_t size)
-{
-    if (countdown >= 0 && countdown-- == 0)
-        return NULL;
-    void *p = calloc(count, size);
-    alive += p != NULL;
-    return p;
-}
-
-static void counting_free(void *p)
-{
-    alive -= p != NULL;
-    free(p);
-}
-
-static const L1L2MemHook hook = {counting_alloc, counting_free};
 
 /* OpenCV allocates its pictures with posix_memalign(). The one below replaces that of the C library, because symbols of
  * the program have precedence. */
@@ -65,22 +46,22 @@ START_TEST(create_survives_the_failure_of_any_allocation)
     const L1L2StabConfig cfg = small_config();
     L1L2StabResult result = L1L2STAB_ERR_NOMEM;
     int failures = 0;
-    l1l2_mem_set_hook(&hook);
+    memory_fixture_begin();
     for (; result != L1L2STAB_OK; failures++) {
         L1L2Stab *s = NULL;
         ck_assert_int_lt(failures, 1000);
-        countdown = failures;
+        memory_countdown = failures;
         result = l1l2stab_create(&s, &cfg);
-        countdown = -1;
+        memory_countdown = -1;
         if (result != L1L2STAB_OK) {
             ck_assert_int_eq(result, L1L2STAB_ERR_NOMEM);
             ck_assert_ptr_null(s);
         }
         l1l2stab_free(&s);
-        ck_assert_int_eq(alive, 0);
+        ck_assert_int_eq(memory_alive, 0);
     }
     ck_assert_int_gt(failures, 20);
-    l1l2_mem_set_hook(NULL);
+    memory_fixture_end();
 }
 END_TEST
 
@@ -96,10 +77,9 @@ START_TEST(a_running_instance_takes_no_memory)
     memcpy(picture.data, out.data, sizeof picture.data);
     memcpy(picture.stride, out.stride, sizeof picture.stride);
     L1L2Stab *s;
-    l1l2_mem_set_hook(&hook);
-    countdown = -1;
+    memory_fixture_begin();
     ck_assert_int_eq(l1l2stab_create(&s, &cfg), L1L2STAB_OK);
-    const int after_create = alive;
+    const int after_create = memory_alive;
     for (int t = 0; t < FRAMES; t++) {
         in[t] = synth_picture_new(cfg.format, cfg.width, cfg.height);
         synth_render(synth, t, cfg.format, in[t].data, in[t].stride);
@@ -107,11 +87,11 @@ START_TEST(a_running_instance_takes_no_memory)
         memcpy(frame.stride, in[t].stride, sizeof frame.stride);
         ck_assert_int_eq(l1l2stab_push(s, &frame), L1L2STAB_OK);
         ck_assert_int_ge(l1l2stab_pull(s, &picture, NULL), L1L2STAB_OK);
-        ck_assert_int_eq(alive, after_create);
+        ck_assert_int_eq(memory_alive, after_create);
     }
     l1l2stab_free(&s);
-    ck_assert_int_eq(alive, 0);
-    l1l2_mem_set_hook(NULL);
+    ck_assert_int_eq(memory_alive, 0);
+    memory_fixture_end();
     for (int t = 0; t < FRAMES; t++)
         synth_picture_free(&in[t]);
     synth_picture_free(&out);

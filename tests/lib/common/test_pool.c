@@ -5,8 +5,8 @@
 #include <stdbool.h>
 
 #include "checkx.h"
-#include "common/mem.h"
 #include "common/pool.h"
+#include "memory_fixture.h"
 
 enum { MAX_PARTS = 500 };
 
@@ -209,16 +209,13 @@ START_TEST(a_run_and_a_task_go_on_at_the_same_time)
 }
 END_TEST
 
-static void *refuse(size_t number, size_t size)
-{
-    return NULL;
-}
-
 START_TEST(no_memory_gives_no_pool)
 {
-    l1l2_mem_set_hook(&(L1L2MemHook){refuse, free});
+    memory_fixture_begin();
+    memory_countdown = 0;
     L1L2Pool *pool = l1l2_pool_create(2);
-    l1l2_mem_set_hook(NULL);
+    ck_assert_int_eq(memory_alive, 0);
+    memory_fixture_end();
     ck_assert_ptr_null(pool);
     l1l2_pool_free(NULL);
 }

@@ -136,6 +136,17 @@ static inline Run *shaky_run(int frames, double pan_px, double shake_px, uint64_
     return drifting_run(frames, pan_px, 0.0, shake_px, seed);
 }
 
+/* Every frame was solved, and its update transform meets the constraints. */
+static inline void assert_all_inside(const Setup *setup, const Run *r)
+{
+    const L1L2PathCropWindow crop =
+        l1l2_path_crop_window(setup->width, setup->height, setup->crop_ratio, l1l2_mat_dim(setup->model));
+    for (int t = 0; t < r->frames; t++) {
+        ck_assert_double_le(l1l2_path_constraint_excess(&crop, &r->out[t].B), 1e-12);
+        ck_assert(!r->out[t].fallback);
+    }
+}
+
 static inline double speed_px(const Run *r, int t)
 {
     return r->out[t].S.m[2] * diagonal_px;

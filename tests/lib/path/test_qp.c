@@ -3,29 +3,10 @@
 #include <string.h>
 
 #include "checkx.h"
-#include "common/mem.h"
+#include "memory_fixture.h"
 #include "path/qp.h"
 
 enum { SIZE = 12 };
-
-static int countdown, alive;
-
-static void *counting_alloc(size_t count, size_t size)
-{
-    if (countdown >= 0 && countdown-- == 0)
-        return NULL;
-    void *p = calloc(count, size);
-    alive += p != NULL;
-    return p;
-}
-
-static void counting_free(void *p)
-{
-    alive -= p != NULL;
-    free(p);
-}
-
-static const L1L2MemHook hook = {counting_alloc, counting_free};
 
 static const L1L2PathQpSettings settings = {.max_iterations = 1000, .rho = 1.0, .tolerance = 1e-6};
 
@@ -90,18 +71,18 @@ START_TEST(the_failure_of_any_allocation_is_reported_and_leaks_nothing)
     L1L2PathQpReport report;
     L1L2StabResult result = L1L2STAB_ERR_NOMEM;
     int failures = 0;
-    l1l2_mem_set_hook(&hook);
+    memory_fixture_begin();
     for (; result != L1L2STAB_OK; failures++) {
         double z[SIZE] = {0.0}, y[SIZE] = {0.0};
         ck_assert_int_lt(failures, 1000);
-        countdown = failures;
+        memory_countdown = failures;
         result = l1l2_path_qp_solve(qp, &settings, z, y, &report);
-        countdown = -1;
+        memory_countdown = -1;
         if (result != L1L2STAB_OK)
             ck_assert_int_eq(result, L1L2STAB_ERR_NOMEM);
-        ck_assert_int_eq(alive, 0);
+        ck_assert_int_eq(memory_alive, 0);
     }
-    l1l2_mem_set_hook(NULL);
+    memory_fixture_end();
     ck_assert_int_gt(report.iterations, 0);
     if (failures > 2) /* the bundled OSQP allocates through the hook; a system's has an allocator of its own */
         ck_assert_int_gt(failures, 40);

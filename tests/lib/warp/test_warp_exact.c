@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the warp must give exactly, and which bytes it must not touch. */
-#include "common/mem.h"
+#include "memory_fixture.h"
 #include "warp/warp_fixture.h"
 
 enum { KERNELS = 3, SITES = 3 };
@@ -286,41 +286,24 @@ START_TEST(a_config_without_format_or_size_is_refused)
 }
 END_TEST
 
-static int allocations, allowed;
-
-static void *allocate_some(size_t count, size_t size)
-{
-    if (allowed-- <= 0)
-        return NULL;
-    allocations++;
-    return calloc(count, size);
-}
-
-static void release(void *p)
-{
-    if (p)
-        allocations--;
-    free(p);
-}
-
 /* The loop test's index: a format that needs memory for its planes, and one that does not. */
 START_TEST(out_of_memory_leaves_nothing_behind)
 {
     const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_I420, L1L2STAB_FORMAT_YUY2};
     const L1L2WarpConfig cfg = {.format = l1l2_image_format_info(formats[_i]), .in_width = 16, .in_height = 16,
                                 .out_width = 16, .out_height = 16};
-    l1l2_mem_set_hook(&(L1L2MemHook){allocate_some, release});
+    memory_fixture_begin();
     L1L2StabResult result = L1L2STAB_ERR_NOMEM;
     int k = 0;
     for (; result != L1L2STAB_OK && k < 20; k++) {
-        allowed = k;
+        memory_countdown = k;
         L1L2Warp *warp = NULL;
         result = l1l2_warp_create(&warp, &cfg);
         ck_assert(result == L1L2STAB_OK || (result == L1L2STAB_ERR_NOMEM && !warp));
         l1l2_warp_free(warp);
-        ck_assert_int_eq(allocations, 0);
+        ck_assert_int_eq(memory_alive, 0);
     }
-    l1l2_mem_set_hook(NULL);
+    memory_fixture_end();
     ck_assert_int_eq(result, L1L2STAB_OK);
     ck_assert_int_gt(k, 1);
 }

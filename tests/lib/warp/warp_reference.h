@@ -173,4 +173,13 @@ static inline void assert_close_to_reference(const L1L2WarpConfig *cfg, const L1
     ck_assert_double_ge(10 * log10(range * range * number / squares), dst->format->depth > 8 ? 62.0 : 58.0);
 }
 
+/* Warps the picture and compares it with the reference. */
+static inline void assert_follows_reference(const L1L2WarpConfig *cfg, const L1L2WarpMap *map, const Picture *src,
+                                            Picture *dst)
+{
+    warp_picture_by(cfg, map, src, dst);
+    assert_close_to_reference(cfg, map, src, dst);
+    assert_guards_untouched(dst);
+}
+
 #endif

@@ -10,17 +10,12 @@ typedef struct Moments {
     double vu[2][2];                           /* sums of vx ux, vx uy; vy ux, vy uy */
 } Moments;
 
-/* A pair of weight 0 is skipped, because it need not be finite. */
-static double weight_of(const double *weights, int i)
-{
-    return weights ? weights[i] : 1.0;
-}
-
+/* Pairs of weight 0 are skipped, because they need not be finite. */
 static Moments moments(const L1L2Pair *pairs, const double *weights, int count)
 {
     Moments m = {0};
     for (int i = 0; i < count; i++) {
-        const double w = weight_of(weights, i);
+        const double w = l1l2_fit_weight(weights, i);
         if (w == 0.0)
             continue;
         m.weight += w;
@@ -32,7 +27,7 @@ static Moments moments(const L1L2Pair *pairs, const double *weights, int count)
     m.from_x /= m.weight, m.from_y /= m.weight;
     m.to_x /= m.weight, m.to_y /= m.weight;
     for (int i = 0; i < count; i++) {
-        const double w = weight_of(weights, i);
+        const double w = l1l2_fit_weight(weights, i);
         if (w == 0.0)
             continue;
         const double ux = pairs[i].from.x - m.from_x, uy = pairs[i].from.y - m.from_y;

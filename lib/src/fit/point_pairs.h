@@ -23,6 +23,12 @@ typedef struct L1L2TrackSet {
     L1L2Rng *rng;                    /* of RANSAC's draws */
 } L1L2TrackSet;
 
+/* The weight of pair i. NULL: all 1. */
+static inline double l1l2_fit_weight(const double *weights, int i)
+{
+    return weights ? weights[i] : 1.0;
+}
+
 /* The frame is divided into 8x6 cells, for coverage and for track weights. */
 enum { L1L2_FIT_CELLS_X = 8, L1L2_FIT_CELLS_Y = 6, L1L2_FIT_CELLS = L1L2_FIT_CELLS_X * L1L2_FIT_CELLS_Y };
 

@@ -33,11 +33,6 @@ static double squared_residual(const L1L2Mat *fit, const L1L2Pair *pair)
     return dx * dx + dy * dy;
 }
 
-static double weight_of(const double *weights, int i)
-{
-    return weights ? weights[i] : 1.0;
-}
-
 /* Marks the inliers and counts them. Returns their consensus weight. */
 static double mark_inliers(const L1L2TrackSet *tracks, const L1L2Mat *fit, bool *inlier, int *inliers)
 {
@@ -47,7 +42,7 @@ static double mark_inliers(const L1L2TrackSet *tracks, const L1L2Mat *fit, bool 
         inlier[i] = squared_residual(fit, &tracks->pairs[i]) <= tracks->threshold * tracks->threshold;
         *inliers += inlier[i];
         if (inlier[i])
-            weight += weight_of(tracks->consensus_weights, i);
+            weight += l1l2_fit_weight(tracks->consensus_weights, i);
     }
     return weight;
 }
@@ -72,7 +67,7 @@ static bool refit(L1L2StabMotionModel model, const L1L2TrackSet *tracks, const b
     for (int i = 0; i < tracks->count; i++) {
         const double r2 =
             squared_residual(fit, &tracks->pairs[i]) / (4.0 * tracks->threshold * tracks->threshold);
-        weights[i] = inlier[i] ? (1.0 - r2) * (1.0 - r2) * weight_of(tracks->fit_weights, i) : 0.0;
+        weights[i] = inlier[i] ? (1.0 - r2) * (1.0 - r2) * l1l2_fit_weight(tracks->fit_weights, i) : 0.0;
     }
     return l1l2_fit(model, tracks->pairs, weights, tracks->count, fit);
 }
@@ -111,7 +106,7 @@ int l1l2_ransac(L1L2StabMotionModel model, const L1L2TrackSet *tracks, bool *inl
     double best = 0.0, all = 0.0;
     int inliers = 0;
     for (int i = 0; i < count; i++)
-        all += weight_of(tracks->consensus_weights, i);
+        all += l1l2_fit_weight(tracks->consensus_weights, i);
     *fit = l1l2_mat_identity();
     for (int drawn = 0, draws = max_draws; count >= size && drawn < draws; drawn++) {
         L1L2Mat candidate;

@@ -17,16 +17,12 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#if defined(__GNUC__)
-#define L1L2_PATH_INLINE static inline __attribute__((always_inline))
-#else
-#define L1L2_PATH_INLINE static inline
-#endif
+#include "common/compiler.h"
 
 /* Leaves D on the diagonal and L, whose own diagonal is 1, below it. original: the diagonal before. Where rounding
  * leaves no digit of a pivot (with lambda = 0 and no active constraint the path may be anywhere), the pivot is replaced
  * by a huge one, so that this component does not move. False where a number is not finite. */
-L1L2_PATH_INLINE bool l1l2_path_ldl_factorize(double *system, const double *original, int size, const int band)
+L1L2_INLINE bool l1l2_path_ldl_factorize(double *system, const double *original, int size, const int band)
 {
     for (int i = 0; i < size; i++) {
         double *column = system + (size_t)i * (size_t)band;
@@ -48,7 +44,7 @@ L1L2_PATH_INLINE bool l1l2_path_ldl_factorize(double *system, const double *orig
 }
 
 /* Solves with the factors. x: the right-hand side, then the solution. */
-L1L2_PATH_INLINE void l1l2_path_ldl_solve(const double *factors, double *x, int size, const int band)
+L1L2_INLINE void l1l2_path_ldl_solve(const double *factors, double *x, int size, const int band)
 {
     for (int i = 0; i < size; i++) {
         const int reach = size - i < band ? size - i : band;

@@ -93,7 +93,7 @@ struct L1L2PathInteriorPoint {
 };
 
 /* The diagonal and what is below it: a third difference reaches three frames. */
-L1L2_PATH_INLINE int band_of(const int dim)
+L1L2_INLINE int band_of(const int dim)
 {
     return dim * (L1L2_PATH_HISTORY + 1);
 }
@@ -142,7 +142,7 @@ void l1l2_path_interior_point_free(L1L2PathInteriorPoint *ipm)
 
 /* A strictly feasible start: q = c and e = |D c| + initial_slack. Each dual of a term is half its weight, so that their
  * sum is the weight from here on. The duals of the constraints are such that all products s y are equal. */
-L1L2_PATH_INLINE void start(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, const int dim)
+L1L2_INLINE void start(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, const int dim)
 {
     const int n = p->count;
     memcpy(ipm->q, p->camera, (size_t)n * sizeof *ipm->q);
@@ -173,9 +173,9 @@ L1L2_PATH_INLINE void start(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p
 }
 
 /* rhs += sum over pairs of value(pair) * gradient of its form. */
-L1L2_PATH_INLINE void add_gradients(const L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p,
-                                    double (*term_value)(const Pair *), double (*crop_value)(const Pair *),
-                                    double *rhs, const int dim)
+L1L2_INLINE void add_gradients(const L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p,
+                               double (*term_value)(const Pair *), double (*crop_value)(const Pair *), double *rhs,
+                               const int dim)
 {
     const Pair *pair = ipm->term;
     for (int order = 1; order <= L1L2_PATH_ORDERS; order++)
@@ -200,8 +200,8 @@ static double dual_force(const Pair *pair)
 }
 
 /* The residual of stationarity, into r. Returns what r adds to the gap in the certificate, see above. */
-L1L2_PATH_INLINE double stationarity(const L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, double *r,
-                                     const int dim)
+L1L2_INLINE double stationarity(const L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, double *r,
+                                const int dim)
 {
     for (int t = 0; t < p->count; t++)
         for (int j = 0; j < dim; j++)
@@ -216,7 +216,7 @@ L1L2_PATH_INLINE double stationarity(const L1L2PathInteriorPoint *ipm, const L1L
 }
 
 /* The system in q after all slacks and duals are eliminated. */
-L1L2_PATH_INLINE void assemble(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, const int dim)
+L1L2_INLINE void assemble(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, const int dim)
 {
     const int n = p->count, band = band_of(dim);
     double *system = ipm->band;
@@ -287,7 +287,7 @@ static void move_crop(Pair *pair)
 }
 
 /* The step of every pair's form, from the step in q. */
-L1L2_PATH_INLINE void step_forms(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, const int dim)
+L1L2_INLINE void step_forms(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, const int dim)
 {
     const double *step = ipm->rhs;
     Pair *pair = ipm->term;
@@ -308,8 +308,8 @@ L1L2_PATH_INLINE void step_forms(L1L2PathInteriorPoint *ipm, const L1L2PathProbl
 }
 
 /* One direction: targets, right-hand side, solution, and every pair's step. */
-L1L2_PATH_INLINE void direction(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, double mu, bool corrector,
-                                const int dim)
+L1L2_INLINE void direction(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, double mu, bool corrector,
+                           const int dim)
 {
     const int size = dim * p->count;
     double *step = ipm->rhs;
@@ -359,7 +359,7 @@ static void move(Pair *pair, int count, double alpha)
 }
 
 /* Predictor and corrector with one factorization. False where a number is not finite. */
-L1L2_PATH_INLINE bool iterate(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, double gap, const int dim)
+L1L2_INLINE bool iterate(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, double gap, const int dim)
 {
     const int sides = 2 * (ipm->terms + ipm->crops), size = dim * p->count;
     assemble(ipm, p, dim);
@@ -396,7 +396,7 @@ static void keep(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p)
         ipm->constraint_dual[i / p->rows][i % p->rows] = ipm->crop[i].y[0] - ipm->crop[i].y[1];
 }
 
-L1L2_PATH_INLINE L1L2PathInteriorPointReport solve(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, const int dim)
+L1L2_INLINE L1L2PathInteriorPointReport solve(L1L2PathInteriorPoint *ipm, const L1L2PathProblem *p, const int dim)
 {
     L1L2PathInteriorPointReport best = {.bound = HUGE_VAL};
     int since_best = 0;

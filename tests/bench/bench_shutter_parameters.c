@@ -290,7 +290,7 @@ static void run_edge(const L1L2ShutterParameters *parameters, double result[2])
     if (!l1l2_warp_mesh_init(&mesh, WIDTH, HEIGHT) || !l1l2_warp_mesh_init(&plain, WIDTH, HEIGHT))
         exit(EXIT_FAILURE);
     l1l2_warp_mesh_set(&plain, &map);
-    l1l2_shutter_mesh_set(&mesh, &map, &model, &residual, WIDTH, HEIGHT, 1.0);
+    l1l2_shutter_mesh_set(&mesh, &map, &model, &residual, &(L1L2ShutterSource){WIDTH, HEIGHT, 1.0});
     double lost = 0.0, all = 0.0, compression = 1.0;
     for (int i = 0; i < mesh.columns * mesh.rows; i++) {
         const L1L2Point u = {plain.node[i].x * unit, plain.node[i].y * unit};

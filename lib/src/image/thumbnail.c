@@ -15,27 +15,37 @@ typedef struct Sums {
     double n, a, b, aa, bb, ab;
 } Sums;
 
+/* How far b is moved against a. */
+typedef struct Shift {
+    int x, y;
+} Shift;
+
+/* The samples with x0 <= x < x1 and y0 <= y < y1. */
+typedef struct Area {
+    int x0, y0, x1, y1;
+} Area;
+
 static int most(int a, int b)
 {
     return a > b ? a : b;
 }
 
-/* Compares a at (x, y) with b at (x + dx, y + dy), where both exist, for x0 <= x < x1 and y0 <= y < y1. */
-static Sums area_sums(const L1L2Thumbnail *a, const L1L2Thumbnail *b, int dx, int dy, int x0, int y0, int x1, int y1)
+/* Compares a at (x, y) with b at (x, y) + shift, where both exist, for the (x, y) of an area. */
+static Sums area_sums(const L1L2Thumbnail *a, const L1L2Thumbnail *b, Shift shift, Area area)
 {
     Sums s = {0};
-    for (int y = most(y0, -dy); y < y1 && y + dy < H; y++)
-        for (int x = most(x0, -dx); x < x1 && x + dx < W; x++) {
-            const double p = a->level[y * W + x], q = b->level[(y + dy) * W + x + dx];
+    for (int y = most(area.y0, -shift.y); y < area.y1 && y + shift.y < H; y++)
+        for (int x = most(area.x0, -shift.x); x < area.x1 && x + shift.x < W; x++) {
+            const double p = a->level[y * W + x], q = b->level[(y + shift.y) * W + x + shift.x];
             s.n += 1.0, s.a += p, s.b += q;
             s.aa += p * p, s.bb += q * q, s.ab += p * q;
         }
     return s;
 }
 
-static Sums overlap_sums(const L1L2Thumbnail *a, const L1L2Thumbnail *b, int dx, int dy)
+static Sums overlap_sums(const L1L2Thumbnail *a, const L1L2Thumbnail *b, Shift shift)
 {
-    return area_sums(a, b, dx, dy, 0, 0, W, H);
+    return area_sums(a, b, shift, (Area){0, 0, W, H});
 }
 
 static double correlation(Sums s)
@@ -46,7 +56,7 @@ static double correlation(Sums s)
 
 bool l1l2_image_thumbnail_has_detail(const L1L2Thumbnail *thumbnail)
 {
-    const Sums s = overlap_sums(thumbnail, thumbnail, 0, 0);
+    const Sums s = overlap_sums(thumbnail, thumbnail, (Shift){0, 0});
     return s.aa / s.n - s.a * s.a / (s.n * s.n) >= min_deviation * min_deviation;
 }
 
@@ -57,18 +67,19 @@ double l1l2_image_thumbnail_correlation(const L1L2Thumbnail *a, const L1L2Thumbn
     double best = -1.0;
     for (int dy = -MAX_SHIFT_Y; dy <= MAX_SHIFT_Y; dy++)
         for (int dx = -MAX_SHIFT_X; dx <= MAX_SHIFT_X; dx++)
-            best = fmax(best, correlation(overlap_sums(a, b, dx, dy)));
+            best = fmax(best, correlation(overlap_sums(a, b, (Shift){dx, dy})));
     return best;
 }
 
 /* Which part of the blocks match at this shift, [0, 1]. */
-static double alike_blocks(const L1L2Thumbnail *a, const L1L2Thumbnail *b, int dx, int dy)
+static double alike_blocks(const L1L2Thumbnail *a, const L1L2Thumbnail *b, Shift shift)
 {
     int alike = 0;
     for (int y = 0; y < H; y += BLOCK)
-        for (int x = 0; x < W; x += BLOCK)
-            alike += correlation(area_sums(a, b, dx, dy, x, y, x + BLOCK < W ? x + BLOCK : W,
-                                           y + BLOCK < H ? y + BLOCK : H)) >= same_block;
+        for (int x = 0; x < W; x += BLOCK) {
+            const Area block = {x, y, x + BLOCK < W ? x + BLOCK : W, y + BLOCK < H ? y + BLOCK : H};
+            alike += correlation(area_sums(a, b, shift, block)) >= same_block;
+        }
     return (double)alike / (((W + BLOCK - 1) / BLOCK) * ((H + BLOCK - 1) / BLOCK));
 }
 
@@ -80,6 +91,6 @@ bool l1l2_image_thumbnails_differ(const L1L2Thumbnail *a, const L1L2Thumbnail *b
     double best = 0.0;
     for (int dy = -MAX_SHIFT_Y; dy <= MAX_SHIFT_Y; dy++)
         for (int dx = -MAX_SHIFT_X; dx <= MAX_SHIFT_X; dx++)
-            best = fmax(best, alike_blocks(a, b, dx, dy));
+            best = fmax(best, alike_blocks(a, b, (Shift){dx, dy}));
     return best < enough_blocks;
 }

@@ -103,8 +103,10 @@ static bool inside(const L1L2WarpMesh *mesh, double half_w, double half_h)
 #endif
 
 double l1l2_shutter_mesh_set(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2ShutterModel *model,
-                            const L1L2ShutterResidual *residual, int width, int height, double pixel_aspect)
+                             const L1L2ShutterResidual *residual, const L1L2ShutterSource *source)
 {
+    const int width = source->width, height = source->height;
+    const double pixel_aspect = source->pixel_aspect;
     const double diagonal_px = hypot(width * pixel_aspect, height); /* as it is shown */
     const double zone = l1l2_shutter_parameters_or_default(model->parameters)->compress_zone;
     Rows rows;

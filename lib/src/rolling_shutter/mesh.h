@@ -14,12 +14,17 @@
 #include "rolling_shutter/model.h"
 #include "warp/mesh.h"
 
+/* The source frames. */
+typedef struct L1L2ShutterSource {
+    int width, height;   /* pixels */
+    double pixel_aspect; /* a pixel's width by its height as it is shown, > 0 */
+} L1L2ShutterSource;
+
 /* Sets the nodes of a mesh that was initialized for the output frame's size. map: output pixel -> source pixel without
- * the residual. residual: e_t of the frame. width, height: of the source, pixels. pixel_aspect: a pixel's width by its
- * height. Returns the longest distance by which the residual moved a node before the compression, in pixels of the
- * frame's height. Returns a negative number if a node would not be finite: then the nodes are undefined, and `map` has
- * to be used. */
+ * the residual. residual: e_t of the frame. Returns the longest distance by which the residual moved a node before the
+ * compression, in pixels of the frame's height. Returns a negative number if a node would not be finite: then the nodes
+ * are undefined, and `map` has to be used. */
 double l1l2_shutter_mesh_set(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2ShutterModel *model,
-                             const L1L2ShutterResidual *residual, int width, int height, double pixel_aspect);
+                             const L1L2ShutterResidual *residual, const L1L2ShutterSource *source);
 
 #endif

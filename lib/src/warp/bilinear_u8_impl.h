@@ -7,14 +7,20 @@
 #include "warp/bilinear_u8.h"
 #include "warp/functions.h"
 
-/* Samples from .. to - 1 of a run, all of the k-th pieces. */
-L1L2_INLINE void bilinear_plain(const L1L2WarpPlane *src, const L1L2WarpScanline *scanline, int k, int from, int to,
-                              uint8_t *dst, const int components)
+/* Samples from .. to - 1 of a run, all of the scanline's k-th pieces. */
+typedef struct Samples {
+    const L1L2WarpScanline *scanline;
+    int k, from, to;
+} Samples;
+
+L1L2_INLINE void bilinear_plain(const L1L2WarpPlane *src, const Samples *samples, uint8_t *dst, const int components)
 {
+    const L1L2WarpScanline *scanline = samples->scanline;
+    const L1L2WarpPiece *along = &scanline->along[samples->k], *down = &scanline->down[samples->k];
     enum { TO_SHARE = 15 - L1L2_WARP_PHASE_BITS, ONE = 1 << L1L2_WARP_BILINEAR_BITS };
-    for (int i = from; i < to; i++) {
-        const int32_t x = l1l2_warp_piece_position(&scanline->along[k], i);
-        const int32_t y = l1l2_warp_piece_position(&scanline->down[k], i);
+    for (int i = samples->from; i < samples->to; i++) {
+        const int32_t x = l1l2_warp_piece_position(along, i);
+        const int32_t y = l1l2_warp_piece_position(down, i);
         const int share_x = (x & (L1L2_WARP_PHASES - 1)) << TO_SHARE;
         const int share_y = (y & (L1L2_WARP_PHASES - 1)) << TO_SHARE;
         const int column = (x >> L1L2_WARP_PHASE_BITS) + scanline->first, row = y >> L1L2_WARP_PHASE_BITS;

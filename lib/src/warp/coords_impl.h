@@ -67,13 +67,6 @@ L1L2_INLINE void run_axis(const double axis[3], int u, int v, int count, int32_t
         run_saturated(start, axis[0], u, count, out);
 }
 
-L1L2_INLINE void affine_run(const L1L2WarpAffine *affine, int u, int v, int count, int32_t *x, int32_t *y,
-                            RunFixed *run_fixed)
-{
-    run_axis(affine->x, u, v, count, x, run_fixed);
-    run_axis(affine->y, u, v, count, y, run_fixed);
-}
-
 L1L2_INLINE double saturate(double at)
 {
     const double near = at < FAR ? at : FAR;
@@ -125,7 +118,8 @@ L1L2_INLINE void mesh_run(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *c
 #define DEFINE_GENERATORS(init)                                                                                       \
     static void run_affine(const L1L2WarpAffine *affine, int u, int v, int count, int32_t *x, int32_t *y)             \
     {                                                                                                                 \
-        affine_run(affine, u, v, count, x, y, run_fixed);                                                             \
+        run_axis(affine->x, u, v, count, x, run_fixed);                                                               \
+        run_axis(affine->y, u, v, count, y, run_fixed);                                                               \
     }                                                                                                                 \
     static void run_mesh(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int v, int32_t *x, int32_t *y)   \
     {                                                                                                                 \

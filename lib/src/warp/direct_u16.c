@@ -54,8 +54,9 @@ L1L2_INLINE int weigh_wide(const L1L2WarpPlane *src, const uint8_t *const *row, 
 }
 
 L1L2_INLINE void sample(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int32_t x, int32_t y, uint8_t *dst,
-                        const int taps, const int components, const int wide)
+                        const Shape shape)
 {
+    const int taps = shape.taps, components = shape.components;
     const int stride = l1l2_warp_kernel_stride(taps), lead = taps / 2 - 1;
     const int16_t *wx = kernel->weights + (x & (L1L2_WARP_PHASES - 1)) * stride;
     const int16_t *wy = kernel->weights + (y & (L1L2_WARP_PHASES - 1)) * stride;
@@ -66,7 +67,7 @@ L1L2_INLINE void sample(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, 
         col[k] = 2 * components * (ptrdiff_t)clamp((x >> L1L2_WARP_PHASE_BITS) - lead + k, 0, src->width - 1);
     }
     for (int c = 0; c < components; c++) {
-        const int value = (wide ? weigh_wide : weigh_narrow)(src, row, col, wx, wy, taps);
+        const int value = (shape.wide ? weigh_wide : weigh_narrow)(src, row, col, wx, wy, taps);
         const uint16_t out = (uint16_t)(clamp(value, 0, (1 << src->depth) - 1) << src->shift);
         memcpy(dst + 2 * c, &out, 2);
         for (int k = 0; k < taps; k++)
@@ -75,10 +76,10 @@ L1L2_INLINE void sample(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, 
 }
 
 L1L2_INLINE void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
-                     int count, uint8_t *dst, const int taps, const int components, const int wide)
+                     int count, uint8_t *dst, const Shape shape)
 {
     for (int i = 0; i < count; i++)
-        sample(src, kernel, x[i], y[i], dst + 2 * components * i, taps, components, wide);
+        sample(src, kernel, x[i], y[i], dst + 2 * shape.components * i, shape);
 }
 
 DEFINE_RUNS(, l1l2_warp_direct_u16_plain)

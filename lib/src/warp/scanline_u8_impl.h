@@ -8,13 +8,24 @@
 
 enum { SCANLINE_VALUES = 4 * L1L2_WARP_SCANLINE_COLUMNS + 16 /* room for a last vector */ };
 
-/* The pass down, for columns from .. to - 1 of a scanline, all of this piece. */
-L1L2_INLINE void down_plain(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int first_column,
-                            const L1L2WarpPiece *piece, int from, int to, int16_t *values, const int taps,
-                            const int components)
+/* What differs between the compiled runs. It is a constant in each of them, so loops over it unroll. */
+typedef struct Shape {
+    int taps, components;
+} Shape;
+
+/* Entries from .. to - 1 of a piece: columns of the pass down, samples of the pass along. */
+typedef struct Entries {
+    const L1L2WarpPiece *piece;
+    int from, to;
+} Entries;
+
+/* The pass down. */
+L1L2_INLINE void down_plain(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int first_column, Entries columns,
+                            int16_t *values, const Shape shape)
 {
-    for (int i = from; i < to; i++) {
-        const int32_t y = l1l2_warp_piece_position(piece, i);
+    const int taps = shape.taps, components = shape.components;
+    for (int i = columns.from; i < columns.to; i++) {
+        const int32_t y = l1l2_warp_piece_position(columns.piece, i);
         const int16_t *weight = kernel->weights + (y & (L1L2_WARP_PHASES - 1)) * l1l2_warp_kernel_stride(taps);
         const int first = (y >> L1L2_WARP_PHASE_BITS) - (taps / 2 - 1);
         const uint8_t *column = src->data + (ptrdiff_t)l1l2_warp_clamp(first_column + i, src->width) * components;
@@ -29,12 +40,13 @@ L1L2_INLINE void down_plain(const L1L2WarpPlane *src, const L1L2WarpKernel *kern
     }
 }
 
-/* The pass along, for samples from .. to - 1 of a run, all of this piece. */
-L1L2_INLINE void along_plain(const L1L2WarpKernel *kernel, const L1L2WarpPiece *piece, int from, int to,
-                             const int16_t *values, uint8_t *dst, const int taps, const int components)
+/* The pass along. */
+L1L2_INLINE void along_plain(const L1L2WarpKernel *kernel, Entries samples, const int16_t *values, uint8_t *dst,
+                             const Shape shape)
 {
-    for (int i = from; i < to; i++) {
-        const int32_t x = l1l2_warp_piece_position(piece, i);
+    const int taps = shape.taps, components = shape.components;
+    for (int i = samples.from; i < samples.to; i++) {
+        const int32_t x = l1l2_warp_piece_position(samples.piece, i);
         const int16_t *weight = kernel->weights + (x & (L1L2_WARP_PHASES - 1)) * l1l2_warp_kernel_stride(taps);
         const int16_t *first = values + ((x >> L1L2_WARP_PHASE_BITS) - (taps / 2 - 1)) * components;
         for (int c = 0; c < components; c++) {
@@ -57,15 +69,15 @@ static inline int end_of(const L1L2WarpPiece *piece, int k, int pieces, int end)
     static void run_##taps##_##components(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel,                     \
                                           const L1L2WarpScanline *scanline, uint8_t *dst)                             \
     {                                                                                                                 \
-        run(src, kernel, scanline, dst, taps, components);                                                            \
+        run(src, kernel, scanline, dst, (Shape){taps, components});                                                   \
     }
 #define DEFINE_RUNS_OF(taps) DEFINE_RUN(taps, 1) DEFINE_RUN(taps, 2) DEFINE_RUN(taps, 3) DEFINE_RUN(taps, 4)
 #define SET_RUNS(runs, taps)                                                                                          \
     runs[taps / 2 - 2][0] = run_##taps##_1, runs[taps / 2 - 2][1] = run_##taps##_2,                                   \
                        runs[taps / 2 - 2][2] = run_##taps##_3, runs[taps / 2 - 2][3] = run_##taps##_4
 
-/* Compiles run(src, kernel, scanline, dst, taps, components) for each number of taps and components, and defines the
- * function init() that puts these eight into the table. */
+/* Compiles run(src, kernel, scanline, dst, shape) for each shape, and defines the function init() that puts these eight
+ * into the table. */
 #define DEFINE_RUNS(init)                                                                                             \
     DEFINE_RUNS_OF(4)                                                                                                 \
     DEFINE_RUNS_OF(6)                                                                                                 \

@@ -10,6 +10,7 @@
 enum { WIDTH = 640, HEIGHT = 360, WINDOW = 60 };
 static const double pi = 3.14159265358979;
 static const double diagonal_px = 734.30239;
+static const L1L2ShutterSource source = {WIDTH, HEIGHT, 1.0};
 
 /* The records of the filter's frames: no two filters of a test live at a time. */
 static L1L2Mat motions[WINDOW + L1L2_SHUTTER_FILTER_PAST];
@@ -286,7 +287,7 @@ START_TEST(no_sample_is_outside_the_source_for_10000_paths_and_residuals)
         const double size = i % 5 == 0 ? 1.0 : i % 5 == 1 ? 0.05 : 0.005;
         const L1L2Mat map = random_map(&rng, uniform(&rng, 0.5, 0.99));
         const L1L2ShutterResidual r = random_residual(&rng, size);
-        ck_assert_double_gt(l1l2_shutter_mesh_set(&mesh, &map, &model, &r, WIDTH, HEIGHT, 1.0), 0.0);
+        ck_assert_double_gt(l1l2_shutter_mesh_set(&mesh, &map, &model, &r, &source), 0.0);
         for (int k = 0; k < mesh.columns * mesh.rows; k++)
             if (!(fabs(mesh.node[k].x) <= 0.5 * WIDTH && fabs(mesh.node[k].y) <= 0.5 * HEIGHT))
                 ck_abort_msg("case %d: node %d is at %.9g, %.9g", i, k, mesh.node[k].x, mesh.node[k].y);
@@ -309,7 +310,7 @@ START_TEST(no_sample_jumps_where_the_residual_reaches_the_border)
         for (int k = 0; k < L1L2_SHUTTER_BANDS; k++)
             r.p[L1L2_SHUTTER_X + k] = -0.05 * i / diagonal_px; /* to the right, 0.05 px a step */
         r.p[L1L2_SHUTTER_PERSPECTIVE] = 1e-9;
-        ck_assert_double_gt(l1l2_shutter_mesh_set(&mesh[i % 2], &map, &model, &r, WIDTH, HEIGHT, 1.0), 0.0);
+        ck_assert_double_gt(l1l2_shutter_mesh_set(&mesh[i % 2], &map, &model, &r, &source), 0.0);
         for (int k = 0; i > 0 && k < mesh[0].columns * mesh[0].rows; k++) {
             const double way = fabs(mesh[1].node[k].x - mesh[0].node[k].x);
             farthest = fmax(farthest, way);
@@ -332,9 +333,9 @@ START_TEST(a_residual_that_is_not_finite_gives_no_mesh)
     L1L2WarpMesh mesh;
     ck_assert(l1l2_warp_mesh_init(&mesh, WIDTH, HEIGHT));
     r.p[2] = NAN;
-    ck_assert_double_lt(l1l2_shutter_mesh_set(&mesh, &map, &model, &r, WIDTH, HEIGHT, 1.0), 0.0);
+    ck_assert_double_lt(l1l2_shutter_mesh_set(&mesh, &map, &model, &r, &source), 0.0);
     r.p[2] = 1e308;
-    ck_assert_double_lt(l1l2_shutter_mesh_set(&mesh, &map, &model, &r, WIDTH, HEIGHT, 1.0), 0.0);
+    ck_assert_double_lt(l1l2_shutter_mesh_set(&mesh, &map, &model, &r, &source), 0.0);
     l1l2_warp_mesh_clear(&mesh);
 }
 END_TEST

@@ -88,11 +88,12 @@ L1L2_INLINE Taps find_taps(const L1L2WarpPlane *src, const Steps *along, const S
     };
 }
 
-/* Renders whole groups, samples from .. to - 1 of the k-th pieces. All of their taps are in the plane. */
-L1L2_INLINE void render_groups(const L1L2WarpPlane *src, const L1L2WarpScanline *scanline, int k, int from, int to,
-                               uint8_t *dst, const int components, const bool steep)
+/* Renders whole groups. All of their taps are in the plane. */
+L1L2_INLINE void render_groups(const L1L2WarpPlane *src, const Samples *samples, uint8_t *dst, const int components,
+                               const bool steep)
 {
-    const int group = group_of(components);
+    const L1L2WarpScanline *scanline = samples->scanline;
+    const int group = group_of(components), k = samples->k, from = samples->from, to = samples->to;
     Steps along = steps_of(&scanline->along[k], components), down = steps_of(&scanline->down[k], components);
     const int64_t across = (int64_t)(group - 1) * down.step, to_low = down.step < 0 ? across : 0;
     along.at += (int64_t)(from - scanline->along[k].from) * along.step;
@@ -139,12 +140,14 @@ L1L2_INLINE void render_piece(const L1L2WarpPlane *src, const L1L2WarpScanline *
         from += group;
     while (from < to && (column_of(scanline, k, to) - src->width) * components + LANES > 0)
         to -= group;
-    bilinear_plain(src, scanline, k, begin, from < end ? from : end, dst, components);
+    const Samples before = {scanline, k, begin, from < end ? from : end}, groups = {scanline, k, from, to};
+    const Samples after = {scanline, k, to > from ? to : from, end};
+    bilinear_plain(src, &before, dst, components);
     if (steep)
-        render_groups(src, scanline, k, from, to, dst, components, true);
+        render_groups(src, &groups, dst, components, true);
     else
-        render_groups(src, scanline, k, from, to, dst, components, false);
-    bilinear_plain(src, scanline, k, to > from ? to : from, end, dst, components);
+        render_groups(src, &groups, dst, components, false);
+    bilinear_plain(src, &after, dst, components);
 }
 
 L1L2_INLINE void run(const L1L2WarpPlane *src, const L1L2WarpScanline *scanline, uint8_t *dst, const int components)

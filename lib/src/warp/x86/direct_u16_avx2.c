@@ -17,7 +17,7 @@ typedef struct Depth {
     __m256i round, max;
 } Depth;
 
-L1L2_INLINE Depth load_depth(const L1L2WarpPlane *src, const int wide)
+L1L2_INLINE Depth load_depth(const L1L2WarpPlane *src, const bool wide)
 {
     const int round = wide ? L1L2_WARP_DIRECT_U16_ROUND : l1l2_warp_direct_u16_narrow_round(src->depth);
     return (Depth){
@@ -30,25 +30,40 @@ L1L2_INLINE Depth load_depth(const L1L2WarpPlane *src, const int wide)
     };
 }
 
-L1L2_INLINE __m256i load_window(const uint8_t *low, const uint8_t *high, const Depth *depth, const int wide)
+/* Addresses in the source for the two halves of a group. */
+typedef struct Halves {
+    const uint8_t *low, *high;
+} Halves;
+
+L1L2_INLINE Halves advance(Halves at, ptrdiff_t bytes)
 {
-    const __m256i window = load_halves(low, high);
+    return (Halves){at.low + bytes, at.high + bytes};
+}
+
+L1L2_INLINE __m256i load_window(Halves at, const Depth *depth, const bool wide)
+{
+    const __m256i window = load_halves(at.low, at.high);
     return wide ? _mm256_xor_si256(window, _mm256_set1_epi16((short)L1L2_WARP_DIRECT_U16_BIAS))
                 : _mm256_srl_epi16(window, depth->shift);
 }
 
-/* The weighted sum of one row's taps, before the cut. first: the shuffle that brings a window's first two taps. */
-L1L2_INLINE __m256i weigh_row(const uint8_t *low, const uint8_t *high, __m256i first, const Weights *wx,
-                              const Depth *depth, const int taps, const int components, const int wide)
+/* What the samples of a group are weighed with. */
+typedef struct Weighing {
+    __m256i first; /* the shuffle that brings a window's first two taps */
+    Weights x, y;
+} Weighing;
+
+/* The weighted sum of one row's taps, before the cut. at: the first taps. */
+L1L2_INLINE __m256i weigh_row(Halves at, const Weighing *by, const Depth *depth, const Shape shape)
 {
     __m256i sum = _mm256_setzero_si256();
-    for (int k = 0; k < taps; k += 2) {
+    for (int k = 0; k < shape.taps; k += 2) {
         /* With one component, a window has the taps 2 and 3 too. */
-        const int from = components == 1 ? k / 4 * 4 : k;
-        const __m256i window = load_window(low + from * 2 * components, high + from * 2 * components, depth, wide);
-        const __m256i order = from == k ? first : _mm256_add_epi8(first, _mm256_set1_epi8(4));
+        const int from = shape.components == 1 ? k / 4 * 4 : k;
+        const __m256i window = load_window(advance(at, from * 2 * shape.components), depth, shape.wide);
+        const __m256i order = from == k ? by->first : _mm256_add_epi8(by->first, _mm256_set1_epi8(4));
         const __m256i two = _mm256_shuffle_epi8(window, order);
-        sum = _mm256_add_epi32(sum, _mm256_madd_epi16(two, wx->pair[k / 2]));
+        sum = _mm256_add_epi32(sum, _mm256_madd_epi16(two, by->x.pair[k / 2]));
     }
     return sum;
 }
@@ -59,28 +74,26 @@ L1L2_INLINE __m256i pair(__m256i a, __m256i b_high)
     return _mm256_blend_epi16(a, b_high, 0xAA);
 }
 
-/* The weighted sum of all taps, not yet limited to the depth. low, high: the first tap of each half. */
-L1L2_INLINE __m256i weigh(const uint8_t *low, const uint8_t *high, ptrdiff_t stride, __m256i first, const Weights *wx,
-                          const Weights *wy, const Depth *depth, const int taps, const int components, const int wide)
+/* The weighted sum of all taps, not yet limited to the depth. at: the first taps. */
+L1L2_INLINE __m256i weigh(Halves at, ptrdiff_t stride, const Weighing *by, const Depth *depth, const Shape shape)
 {
     __m256i sum = depth->round, lower = _mm256_setzero_si256();
-    for (int r = 0; r < taps; r += 2) {
-        const __m256i a = weigh_row(low + r * stride, high + r * stride, first, wx, depth, taps, components, wide);
-        const __m256i b = weigh_row(low + (r + 1) * stride, high + (r + 1) * stride, first, wx, depth, taps, components,
-                                    wide);
-        if (!wide) {
+    for (int r = 0; r < shape.taps; r += 2) {
+        const __m256i a = weigh_row(advance(at, r * stride), by, depth, shape);
+        const __m256i b = weigh_row(advance(at, (r + 1) * stride), by, depth, shape);
+        if (!shape.wide) {
             const __m256i rows = pair(_mm256_srl_epi32(a, depth->bits), _mm256_sll_epi32(b, depth->rest));
-            sum = _mm256_add_epi32(sum, _mm256_madd_epi16(rows, wy->pair[r / 2]));
+            sum = _mm256_add_epi32(sum, _mm256_madd_epi16(rows, by->y.pair[r / 2]));
             continue;
         }
         enum { LOW = L1L2_WARP_DIRECT_U16_ROW_SHIFT, HIGH = LOW + L1L2_WARP_DIRECT_U16_PART_BITS };
         const __m256i upper_parts = pair(_mm256_srli_epi32(a, HIGH), _mm256_slli_epi32(b, 16 - HIGH));
         const __m256i lower_parts = _mm256_and_si256(pair(_mm256_srli_epi32(a, LOW), _mm256_slli_epi32(b, 16 - LOW)),
                                                      _mm256_set1_epi16((1 << L1L2_WARP_DIRECT_U16_PART_BITS) - 1));
-        sum = _mm256_add_epi32(sum, _mm256_madd_epi16(upper_parts, wy->pair[r / 2]));
-        lower = _mm256_add_epi32(lower, _mm256_madd_epi16(lower_parts, wy->pair[r / 2]));
+        sum = _mm256_add_epi32(sum, _mm256_madd_epi16(upper_parts, by->y.pair[r / 2]));
+        lower = _mm256_add_epi32(lower, _mm256_madd_epi16(lower_parts, by->y.pair[r / 2]));
     }
-    if (!wide)
+    if (!shape.wide)
         return _mm256_sra_epi32(sum, depth->narrow_shift);
     sum = _mm256_add_epi32(sum, _mm256_srai_epi32(lower, L1L2_WARP_DIRECT_U16_PART_BITS));
     return _mm256_add_epi32(_mm256_srai_epi32(sum, L1L2_WARP_DIRECT_U16_SHIFT),
@@ -115,11 +128,20 @@ L1L2_INLINE Reach find_reach(const L1L2WarpPlane *src, const int taps, const int
     return (Reach){columns > 0 ? (uint32_t)columns : 0, rows > 0 ? (uint32_t)rows : 0};
 }
 
+/* What all groups of a run share. */
+typedef struct Source {
+    const L1L2WarpPlane *plane;
+    const L1L2WarpKernel *kernel;
+    Reach reach;
+    Depth depth;
+} Source;
+
 /* Renders a group. False: it does not fit, and nothing was written. */
-L1L2_INLINE bool render_group(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const Reach *reach,
-                              const Depth *depth, const int32_t *x, const int32_t *y, uint8_t *dst, const int taps,
-                              const int components, const int wide)
+L1L2_INLINE bool render_group(const Source *src, const int32_t *x, const int32_t *y, uint8_t *dst, const Shape shape)
 {
+    const int taps = shape.taps, components = shape.components;
+    const Reach *reach = &src->reach;
+    const ptrdiff_t stride = src->plane->stride;
     const int half = 4 / components; /* samples */
     const int longest = components == 1 ? (taps == 2 ? 6 : 4) : 4 - components;
     const int low_x = first_tap(x[0], taps), high_x = first_tap(x[half], taps);
@@ -131,11 +153,11 @@ L1L2_INLINE bool render_group(const L1L2WarpPlane *src, const L1L2WarpKernel *ke
         (uint32_t)high_y >= reach->rows || !all_within(columns, longest))
         return false;
 
-    const Weights wx = load_weights(kernel, x, taps, components), wy = load_weights(kernel, y, taps, components);
-    const __m256i first = first_shuffle(columns, components);
-    const uint8_t *low = src->data + low_y * src->stride + (ptrdiff_t)low_x * 2 * components;
-    const uint8_t *high = src->data + high_y * src->stride + (ptrdiff_t)high_x * 2 * components;
-    __m256i sums = weigh(low, high, src->stride, first, &wx, &wy, depth, taps, components, wide);
+    const Weighing by = {first_shuffle(columns, components), load_weights(src->kernel, x, taps, components),
+                         load_weights(src->kernel, y, taps, components)};
+    const Halves at = {src->plane->data + low_y * stride + (ptrdiff_t)low_x * 2 * components,
+                       src->plane->data + high_y * stride + (ptrdiff_t)high_x * 2 * components};
+    __m256i sums = weigh(at, stride, &by, &src->depth, shape);
     if (half > 1 && !_mm256_testz_si256(rows, rows)) {
         /* Some lanes are one row further, all of them up or all down: weigh that row too, and let each lane choose. */
         const int step = _mm256_movemask_ps(_mm256_castsi256_ps(rows)) ? -1 : 1;
@@ -143,24 +165,23 @@ L1L2_INLINE bool render_group(const L1L2WarpPlane *src, const L1L2WarpKernel *ke
         if (_mm256_movemask_epi8(_mm256_or_si256(here, there)) != -1 || (uint32_t)(low_y + step) >= reach->rows ||
             (uint32_t)(high_y + step) >= reach->rows)
             return false;
-        const __m256i further = weigh(low + step * src->stride, high + step * src->stride, src->stride, first, &wx, &wy,
-                                      depth, taps, components, wide);
+        const __m256i further = weigh(advance(at, step * stride), stride, &by, &src->depth, shape);
         sums = _mm256_blendv_epi8(further, sums, here);
     }
-    store(dst, sums, depth);
+    store(dst, sums, &src->depth);
     return true;
 }
 
 L1L2_INLINE void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const int32_t *x, const int32_t *y,
-                     int count, uint8_t *dst, const int taps, const int components, const int wide)
+                     int count, uint8_t *dst, const Shape shape)
 {
-    L1L2WarpDirectRun *const plain = l1l2_warp_direct_u16_plain.run[wide][taps / 2 - 1][components / 2];
-    const Reach reach = find_reach(src, taps, components);
-    const Depth depth = load_depth(src, wide);
+    const int taps = shape.taps, components = shape.components;
+    L1L2WarpDirectRun *const plain = l1l2_warp_direct_u16_plain.run[shape.wide][taps / 2 - 1][components / 2];
+    const Source source = {src, kernel, find_reach(src, taps, components), load_depth(src, shape.wide)};
     const int group = 8 / components;
     int i = 0;
     for (; i + group <= count; i += group)
-        if (!render_group(src, kernel, &reach, &depth, x + i, y + i, dst + 2 * components * i, taps, components, wide))
+        if (!render_group(&source, x + i, y + i, dst + 2 * components * i, shape))
             plain(src, kernel, x + i, y + i, group, dst + 2 * components * i);
     plain(src, kernel, x + i, y + i, count - i, dst + 2 * components * i);
 }

@@ -69,11 +69,11 @@ L1L2_INLINE TapWeights weigh_lanczos(const L1L2WarpKernel *kernel, const Steps *
     return w;
 }
 
-L1L2_INLINE TapWeights weigh(const L1L2WarpKernel *kernel, const Steps *steps, __m256i position, const int taps,
-                          const int components, const bool down)
+L1L2_INLINE TapWeights weigh(const L1L2WarpKernel *kernel, const Steps *steps, __m256i position, const Shape shape,
+                             const bool down)
 {
     const __m256i phase = _mm256_and_si256(position, words(L1L2_WARP_PHASES - 1));
-    return taps == 4 ? weigh_cubic(phase) : weigh_lanczos(kernel, steps, components, down);
+    return shape.taps == 4 ? weigh_cubic(phase) : weigh_lanczos(kernel, steps, shape.components, down);
 }
 
 /* Sixteen lanes' weighted sums down `rows` rows, all lanes from the same first row. */
@@ -104,14 +104,21 @@ L1L2_INLINE __m256i sum_across(const uint8_t *first, ptrdiff_t stride, const Tap
     return sum_down(first, stride, weight, taps + 1);
 }
 
-/* The same where it crosses several rows: `further` is 0 .. most. Every first row is summed, and each lane takes its
- * own. */
-L1L2_INLINE __m256i sum_steep(const uint8_t *first, ptrdiff_t stride, const TapWeights *w, __m256i further, int most,
-                              const int taps)
+/* The source rows that a group's columns are at. */
+typedef struct Rows {
+    const uint8_t *first; /* the topmost taps of the group's columns */
+    ptrdiff_t stride;
+    int64_t row;          /* the uppermost row that a lane is at */
+    int more;             /* rows from there to the lowest one, if the piece is steep */
+} Rows;
+
+/* The same where it crosses several rows: `further` is 0 .. rows->more. Every first row is summed, and each lane takes
+ * its own. */
+L1L2_INLINE __m256i sum_steep(const Rows *rows, const TapWeights *w, __m256i further, const int taps)
 {
     __m256i sum = _mm256_setzero_si256();
-    for (int row = 0; row <= most; row++)
-        sum = _mm256_blendv_epi8(sum, sum_down(first + row * stride, stride, w->tap, taps),
+    for (int row = 0; row <= rows->more; row++)
+        sum = _mm256_blendv_epi8(sum, sum_down(rows->first + row * rows->stride, rows->stride, w->tap, taps),
                                  _mm256_cmpeq_epi16(further, words(row)));
     return sum;
 }
@@ -119,41 +126,43 @@ L1L2_INLINE __m256i sum_steep(const uint8_t *first, ptrdiff_t stride, const TapW
 /* How often a group of a piece crosses a row of the source: never, at most once, more often. */
 enum { FLAT, CROSSING, STEEP };
 
-/* The sums of a group's columns. first: of their topmost taps. row: the uppermost that a lane is at; more: rows from
- * there to the lowest, if the piece is steep. */
-L1L2_INLINE __m256i group_down(const uint8_t *first, ptrdiff_t stride, const L1L2WarpKernel *kernel,
-                               const Steps *steps, int64_t row, int more, const int taps, const int components,
+/* The sums of a group's columns. */
+L1L2_INLINE __m256i group_down(const Rows *rows, const L1L2WarpKernel *kernel, const Steps *steps, const Shape shape,
                                const int crossing)
 {
-    const __m256i position = positions_from(steps, (int32_t)(steps->at - (row << L1L2_WARP_STEP_BITS)), components,
-                                            true);
+    const int32_t from_row = (int32_t)(steps->at - (rows->row << L1L2_WARP_STEP_BITS));
+    const __m256i position = positions_from(steps, from_row, shape.components, true);
     const __m256i further = _mm256_srai_epi16(position, L1L2_WARP_PHASE_BITS);
-    const TapWeights w = weigh(kernel, steps, position, taps, components, true);
+    const TapWeights w = weigh(kernel, steps, position, shape, true);
     if (crossing == FLAT)
-        return sum_down(first, stride, w.tap, taps);
+        return sum_down(rows->first, rows->stride, w.tap, shape.taps);
     if (crossing == CROSSING)
-        return sum_across(first, stride, &w, further, taps);
-    return sum_steep(first, stride, &w, further, more, taps);
+        return sum_across(rows->first, rows->stride, &w, further, shape.taps);
+    return sum_steep(rows, &w, further, shape.taps);
 }
 
-/* Groups of columns, from .. end - 1 of a piece and what the last group has beyond. All taps are in the plane.
+/* Groups of columns of a piece, and what the last group has beyond. All taps are in the plane.
  *
  * Pointers are formed group by group, and only to a group's topmost taps. A pointer for an empty range, or to a row
  * above the first one, would lie outside the plane. */
-L1L2_INLINE void piece_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpPiece *piece,
-                            int first_column, int from, int end, int16_t *values, const int taps,
-                            const int components, const int crossing)
+L1L2_INLINE void piece_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int first_column, Entries columns,
+                            int16_t *values, const Shape shape, const int crossing)
 {
-    const int group = group_of(components);
+    const L1L2WarpPiece *piece = columns.piece;
+    const int components = shape.components, group = group_of(components);
     const int64_t across = (int64_t)(group - 1) * piece->step, to_low = piece->step < 0 ? across : 0;
     Steps steps = steps_of(piece, components);
-    steps.at += (int64_t)(from - piece->from) * piece->step;
-    for (int i = from; i < end; i += group) {
+    steps.at += (int64_t)(columns.from - piece->from) * piece->step;
+    for (int i = columns.from; i < columns.to; i += group) {
         const int64_t low = steps.at + to_low, row = low >> L1L2_WARP_STEP_BITS;
-        const int more = (int)(((low == steps.at ? low + across : steps.at) >> L1L2_WARP_STEP_BITS) - row);
-        const uint8_t *first = src->data + (row - (taps / 2 - 1)) * src->stride +
-                               (ptrdiff_t)(first_column + i) * components;
-        const __m256i sum = group_down(first, src->stride, kernel, &steps, row, more, taps, components, crossing);
+        const ptrdiff_t column = first_column + i;
+        const Rows rows = {
+            .first = src->data + (row - (shape.taps / 2 - 1)) * src->stride + column * components,
+            .stride = src->stride,
+            .row = row,
+            .more = (int)(((low == steps.at ? low + across : steps.at) >> L1L2_WARP_STEP_BITS) - row),
+        };
+        const __m256i sum = group_down(&rows, kernel, &steps, shape, crossing);
         _mm256_storeu_si256((void *)(values + i * components), sum);
         steps.at += (int64_t)group * piece->step;
     }
@@ -165,8 +174,9 @@ L1L2_INLINE int row_of(const L1L2WarpPiece *piece, int i)
 }
 
 L1L2_INLINE void run_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpScanline *scanline,
-                          int16_t *values, const int taps, const int components)
+                          int16_t *values, const Shape shape)
 {
+    const int taps = shape.taps, components = shape.components;
     const int group = group_of(components), lead = taps / 2 - 1, first = scanline->first;
     /* A group that begins in inside .. outside - 1 has all of its columns, and sixteen bytes, in the plane. */
     const int inside = -first, outside = src->width - first - (LANES + components - 1) / components + 1;
@@ -179,24 +189,26 @@ L1L2_INLINE void run_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel
         int to = end < outside ? end : outside > from ? from + (outside - from + group - 1) / group * group : from;
         if (low < lead || high + taps - lead >= src->height)
             from = to = end;
-        down_plain(src, kernel, first, piece, piece->from, from, values, taps, components);
+        const Entries groups = {piece, from, to};
+        down_plain(src, kernel, first, (Entries){piece, piece->from, from}, values, shape);
         if (scanline->down_pieces == 1 && low == high)
-            piece_down(src, kernel, piece, first, from, to, values, taps, components, FLAT);
+            piece_down(src, kernel, first, groups, values, shape, FLAT);
         else if (abs(piece->step) <= (1 << L1L2_WARP_STEP_BITS) / group)
-            piece_down(src, kernel, piece, first, from, to, values, taps, components, CROSSING);
+            piece_down(src, kernel, first, groups, values, shape, CROSSING);
         else
-            piece_down(src, kernel, piece, first, from, to, values, taps, components, STEEP);
-        down_plain(src, kernel, first, piece, to, end, values, taps, components);
+            piece_down(src, kernel, first, groups, values, shape, STEEP);
+        down_plain(src, kernel, first, (Entries){piece, to, end}, values, shape);
     }
 }
 
 /* Eight sums along. first_low, first_high: the first values of two quarters' windows. */
 L1L2_INLINE __m256i sum_along(const int16_t *first_low, const int16_t *first_high, __m256i pairs, const __m256i *weight,
-                              const int taps, const int components)
+                              const Shape shape)
 {
     __m256i sum = _mm256_set1_epi32(L1L2_WARP_SCANLINE_ROUND);
-    for (int k = 0; k < taps / 2; k++) {
-        const __m256i window = load_halves(first_low + 2 * k * components, first_high + 2 * k * components);
+    for (int k = 0; k < shape.taps / 2; k++) {
+        const int step = 2 * k * shape.components;
+        const __m256i window = load_halves(first_low + step, first_high + step);
         sum = _mm256_add_epi32(sum, _mm256_madd_epi16(_mm256_shuffle_epi8(window, pairs), weight[k]));
     }
     return _mm256_srai_epi32(sum, L1L2_WARP_SCANLINE_SHIFT);
@@ -204,12 +216,13 @@ L1L2_INLINE __m256i sum_along(const int16_t *first_low, const int16_t *first_hig
 
 /* Renders the samples of a group. */
 L1L2_INLINE void group_along(const L1L2WarpKernel *kernel, const Steps *steps, const int16_t *values, uint8_t *dst,
-                             const int taps, const int components)
+                             const Shape shape)
 {
+    const int taps = shape.taps, components = shape.components;
     const int64_t at = steps->at, quarter_step = (int64_t)group_of(components) / 4 * steps->step;
     const __m256i position = positions_from(steps, (int32_t)(at & ((1 << L1L2_WARP_STEP_BITS) - 1)), components, false);
     const __m256i column = _mm256_srai_epi16(position, L1L2_WARP_PHASE_BITS);
-    const TapWeights w = weigh(kernel, steps, position, taps, components, false);
+    const TapWeights w = weigh(kernel, steps, position, shape, false);
 
     /* The bytes of the first two taps in a quarter's window. */
     const __m256i offset = _mm256_sub_epi16(column, _mm256_shufflehi_epi16(_mm256_shufflelo_epi16(column, 0), 0));
@@ -227,33 +240,33 @@ L1L2_INLINE void group_along(const L1L2WarpKernel *kernel, const Steps *steps, c
     for (int q = 0; q < 4; q++)
         first[q] = values + ((at + q * quarter_step) >> L1L2_WARP_STEP_BITS) * components - (taps / 2 - 1) * components;
     store(dst, _mm256_packs_epi32(
-        sum_along(first[0], first[2], _mm256_unpacklo_epi16(left, right), low, taps, components),
-        sum_along(first[1], first[3], _mm256_unpackhi_epi16(left, right), high, taps, components)), components);
+        sum_along(first[0], first[2], _mm256_unpacklo_epi16(left, right), low, shape),
+        sum_along(first[1], first[3], _mm256_unpackhi_epi16(left, right), high, shape)), components);
 }
 
 /* A group may write beyond a piece's end; the next piece then overwrites that. Plain C renders the rest of the last
  * one. */
 L1L2_INLINE void run_along(const L1L2WarpKernel *kernel, const L1L2WarpScanline *scanline, const int16_t *values,
-                           uint8_t *dst, const int taps, const int components)
+                           uint8_t *dst, const Shape shape)
 {
-    const int group = group_of(components), count = scanline->count;
+    const int components = shape.components, group = group_of(components), count = scanline->count;
     for (int k = 0; k < scanline->along_pieces; k++) {
         const L1L2WarpPiece *piece = &scanline->along[k];
         Steps steps = steps_of(piece, components);
         const int end = end_of(scanline->along, k, scanline->along_pieces, count);
         int i = piece->from;
         for (; i < end && i + group <= count; i += group, steps.at += (int64_t)group * steps.step)
-            group_along(kernel, &steps, values, dst + i * components, taps, components);
-        along_plain(kernel, piece, i, end, values, dst, taps, components);
+            group_along(kernel, &steps, values, dst + i * components, shape);
+        along_plain(kernel, (Entries){piece, i, end}, values, dst, shape);
     }
 }
 
 L1L2_INLINE void run(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpScanline *scanline,
-                     uint8_t *dst, const int taps, const int components)
+                     uint8_t *dst, const Shape shape)
 {
     int16_t values[SCANLINE_VALUES];
-    run_down(src, kernel, scanline, values, taps, components);
-    run_along(kernel, scanline, values, dst, taps, components);
+    run_down(src, kernel, scanline, values, shape);
+    run_along(kernel, scanline, values, dst, shape);
 }
 
 DEFINE_RUNS(l1l2_warp_scanline_u8_init_avx2)

@@ -93,8 +93,8 @@ static double share_of_time(const L1L2Path *path, const L1L2PathWindow *step, in
     return 0.5 * (frame_at(path, frame)->step + (t + 1 < step->count ? frame_at(path, frame + 1)->step : 1.0));
 }
 
-/* eq. (1), relative to the window's first frame: C of the frames of the window, and P of the three before it. */
-static void describe_window(L1L2Path *path, const L1L2PathWindow *step)
+/* eq. (1): C of the window's frames, relative to the first of them, with their weights and constraints. */
+static void set_camera_path(L1L2Path *path, const L1L2PathWindow *step)
 {
     L1L2PathProblem *p = path->problem;
     const int64_t first = path->start + step->first;
@@ -111,10 +111,17 @@ static void describe_window(L1L2Path *path, const L1L2PathWindow *step)
         l1l2_path_problem_set(p, t, &camera, frame->lambda * 30.0 / rate * share_of_time(path, step, t), &crop);
         l1l2_path_problem_set_steps(p, t, steps);
     }
+}
+
+/* For a continuous join: P of the three frames before the window, in the same reference. */
+static void set_history(L1L2Path *path, const L1L2PathWindow *step)
+{
+    L1L2PathProblem *p = path->problem;
+    const int64_t first = path->start + step->first;
+    L1L2Mat camera = l1l2_mat_identity();
     p->history = 0;
     if (blended(path, step) > 0)
         return;
-    camera = l1l2_mat_identity();
     for (int back = 1; back <= L1L2_PATH_HISTORY && back <= step->first; back++) {
         L1L2Mat inverse;
         l1l2_mat_inverse(frame_at(path, first - back + 1)->F, &inverse);
@@ -208,7 +215,8 @@ static void decide(L1L2Path *path, const L1L2PathWindow *step, const L1L2PathSol
 static void solve_window(L1L2Path *path, const L1L2PathWindow *step)
 {
     const double near_enough = 1e-4;
-    describe_window(path, step);
+    set_camera_path(path, step);
+    set_history(path, step);
     const L1L2PathSolverReport report =
         l1l2_path_solver_solve(path->solver, path->cfg.solver, step->emit, path->problem, path->solution);
     const bool usable = report.converged || report.bound <= near_enough;

@@ -6,7 +6,7 @@
  * usage: bench_alignment [CASE]     default: all cases of synth_hard.h, noise of sigma 2, 5 and 10, three seeds
  *
  * Errors are in pixels of a picture 640 wide, at the frame's corners: the rms and the worst of the accepted ones, and
- * how many are accepted, of how many. `behind` is the error of the sharp frames behind a gap of blurred ones, when they
+ * how many are accepted, of how many. `behind` is the error of the sharp frames after a gap of blurred ones, when they
  * are aligned with the sharp frame before the gap.
  */
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The shake that is left, by crop ratio, on measured camera paths: kept picture against smoothness. The default of
- * crop-ratio was chosen by this table.
+ * The shake that remains on measured camera paths, by crop ratio. A larger crop ratio keeps more of the picture, and
+ * more shake. The default of crop-ratio was chosen by this table.
  *
  * usage: bench_crop MOTION...     files as in tests/reference/motion
  */

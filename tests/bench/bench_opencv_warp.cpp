@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Informational: this library's warp compared with OpenCV's warpAffine (three planes) and a memcpy, on the same 1080p
- * I420 frames and one core, in ms of CPU time per frame. Best and median of many frames, taken in turns so that all run
- * under the same load. A ring of frames larger than the caches is used, as in a stabilizer.
+ * I420 frames and one core, in ms of CPU time per frame. Best and median of many frames. The candidates take turns, so
+ * that all run under the same load. A ring of frames larger than the caches is used, as in a stabilizer.
  *
  * usage: bench_opencv_warp
  */

@@ -9,8 +9,8 @@
  * error changes most. Clips given as raw gray files have no truth: for them the error is the distance from the motion
  * at the defaults.
  *
- * A module takes part with a table of rows (name, value, unit, effect, evidence) and a struct of doubles in the same
- * order; add it to `tables` and, if it is not a part of the motion's configuration, to measure().
+ * To add a module, give it a table of rows (name, value, unit, effect, evidence) and a struct of doubles in the same
+ * order. Add the table to `tables` and, if it is not a part of the motion's configuration, to measure().
  *
  * usage: bench_parameters [PART_OF_A_NAME [FILE WIDTH HEIGHT]...]      default: all parameters, synthetic clips
  */

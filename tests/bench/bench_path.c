@@ -22,7 +22,7 @@ static double uniform(L1L2Rng *rng, double low, double high)
     return low + (high - low) * (l1l2_rng_next(rng) / 4294967296.0);
 }
 
-/* With 2 parameters the turn is left out of the same shake, with 6 there is a stretch and a skew besides. */
+/* The same shake for each model: with 2 parameters it has no turn, with 6 it also has stretch and skew. */
 static void describe(L1L2PathProblem *p, int count, uint64_t seed)
 {
     L1L2Rng rng = l1l2_rng_seeded(seed);
@@ -45,7 +45,7 @@ static void describe(L1L2PathProblem *p, int count, uint64_t seed)
     }
 }
 
-/* A zoom of 1.5 a frame: C_t leaves the range in which the numbers are good. */
+/* A zoom of 1.5 a frame: C_t leaves the range in which double precision suffices. */
 static void describe_zoom(L1L2PathProblem *p, int count)
 {
     const L1L2PathCropWindow crop = l1l2_path_crop_window(640, 360, 0.9, p->dim);

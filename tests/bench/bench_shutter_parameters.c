@@ -17,8 +17,8 @@
  * value of their parameters. Printed is by how much the residual changes, rms over the frames, px, and the default's
  * rms.
  *
- * usage: bench_shutter_parameters [PARAMETER]    All of them, or one. Prints the results that differ by 3 % or more
- *                                                from the defaults', and names the parameters of which there are none.
+ * usage: bench_shutter_parameters [PARAMETER]    All parameters, or one. Prints the results that differ by 3 % or more
+ *        from those of the defaults, and names the parameters without such a result.
  *        gst-launch-1.0 -q filesrc location=CLIP ! decodebin ! videoconvert ! video/x-raw,format=GRAY8 ! fdsink |
  *        bench_shutter_parameters WIDTH HEIGHT      (WIDTH a multiple of 4: rows without padding)
  */
@@ -68,7 +68,7 @@ static const Clip clips[] = {
 };
 enum { CLIPS = sizeof clips / sizeof *clips, RESULTS = 3 * CLIPS + 4 };
 
-/* What all runs of a clip have in common. */
+/* What is the same in all runs of a clip. */
 typedef struct Recording {
     Synth *synth;
     L1L2Pair pair[FRAMES][TRACKS];

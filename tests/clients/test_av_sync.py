@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Audio and video stay in sync: flash and beep, which coincide in the input, are found in the output files.
 
-The pipeline is the documented one: the queue of the sound's branch holds as much as the window.
+The pipeline is the documented one: the queue of the audio branch holds as much as the window.
 """
 import unittest
 
@@ -13,7 +13,7 @@ clip.begin(elements=('avenc_aac', 'matroskamux'))
 folder = clip.folder()
 SECONDS = 4
 film = clip.make(folder / 'film.mov', SECONDS * FPS, audio=True)
-# For a threshold of a sixth, a beep's onset is its first quarter period.
+# A sixth of a beep's amplitude: the beginning is then found within the first quarter of its period.
 THRESHOLD = 2000
 
 

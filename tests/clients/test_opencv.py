@@ -30,7 +30,7 @@ def numbers(*arguments):
     return found
 
 
-# The times that VideoCapture gives are no measure: it warns itself that they run ahead of the frames.
+# The times that VideoCapture reports are not tested: it warns that they run ahead of the frames.
 class OpenCV(unittest.TestCase):
     def test_it_reads_every_frame_to_the_end(self):
         self.assertEqual(numbers(PIPELINE), [*range(FRAMES)])

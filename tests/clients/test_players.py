@@ -67,7 +67,7 @@ class GstPlay(unittest.TestCase):
 
     def test_the_keys_for_seek_rate_and_direction_give_consecutive_frames(self):
         times = self.play(film, RIGHT, LEFT, b'+', b'd', b'q')
-        # The first frame after a seek is cut to begin there, and may be as good as the next one.
+        # The first frame after a seek is clipped to begin at the target, so it may round to the number of the next one.
         numbers = [math.floor(t + 0.01) for t in times]
         steps = ''.join({1: '+', -1: '-'}.get(b - a, '|') for a, b in zip(numbers, numbers[1:]))
         # From the beginning; later; earlier; faster, from about the same frame on; backward.

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Informational: what it takes to load the plugin, and from a new element's NULL state to its first output caps, by
- * size; ms, medians. */
+/* Informational: the time to load the plugin, and the time from the NULL state of a new element to its first output
+ * caps, by frame size. Median ms. */
 #include "stabharness.h"
 
 #define ROUNDS 21

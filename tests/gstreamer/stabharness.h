@@ -26,8 +26,8 @@ GstHarness *stab_harness_new (const gchar * caps, const gchar * property, ...)
 /* Frees the harness and the bus. */
 void stab_harness_free (GstHarness * h);
 
-/* Plays a pipeline to the end of its stream, within 40 seconds, and leaves it in the state PLAYING. `what` is printed if
- * that fails. */
+/* Plays a pipeline to the end of its stream, within 40 seconds, and leaves it in the state PLAYING. `what` is printed
+ * if that fails. */
 void stab_play_to_end (GstElement * pipeline, const gchar * what);
 
 /* The next message of this type, or NULL; does not wait. */
@@ -58,7 +58,7 @@ void stab_pull_frames (GstHarness * h, guint start, guint n);
 /* The position that the element answers to a query from downstream. */
 GstClockTime stab_position (GstHarness * h);
 
-/* A record of what comes out from now on, in order: "f3 " for frame 3, the name of its type for an event. */
+/* Records what comes out from now on, in order: "f3 " for frame 3, and for an event the name of its type. */
 GString *stab_record_new (GstHarness * h);
 
 G_END_DECLS

@@ -54,7 +54,7 @@ run_to_end (GstElement * pipeline, const gchar * what)
   gst_element_set_state (pipeline, GST_STATE_NULL);
 }
 
-/* What a fakesink at the end of the pipeline gets. */
+/* The frames that a fakesink at the end of the pipeline gets. */
 static Frames
 frames_at_the_end (const gchar * path, const gchar * elements)
 {
@@ -75,8 +75,7 @@ frames_at_the_end (const gchar * path, const gchar * elements)
   return frames;
 }
 
-/* What a player gets from the file that the pipeline writes: it is muxed, and
- * decoded again. */
+/* The frames that a player gets from the file that the pipeline writes: they are muxed, and decoded again. */
 static Frames
 frames_of_file (const gchar * path, const gchar * elements)
 {
@@ -129,8 +128,8 @@ GST_START_TEST (every_frame_comes_out_with_its_timestamp)
 
 GST_END_TEST;
 
-/* Compares with the same file made without the element, because encoder and
- * muxer lose something of an unusual clip themselves. */
+/* Compares with the same file made without the element, because encoder and muxer themselves lose some frames of
+ * unusual clips. */
 GST_START_TEST (the_readmes_pipeline_makes_a_file_that_plays_like_its_input)
 {
   const gchar *in = g_ptr_array_index (clips, __i__);
@@ -171,7 +170,7 @@ static void
 check_info (const L1L2StabInfo * info, gdouble half_w, gdouble half_h,
     Jitter jitter[2])
 {
-  for (gint k = 0; k < 4; k++) {        /* an affine map: four corners decide for all pixels */
+  for (gint k = 0; k < 4; k++) {        /* the map is affine: if the four corners are inside, all pixels are */
     const gdouble x = k & 1 ? half_w : -half_w, y = k & 2 ? half_h : -half_h;
     const gdouble *m = info->warp;
     fail_unless (fabs (m[0] * x + m[1] * y + m[2]) <= half_w + 1e-9);
@@ -200,7 +199,7 @@ stabilizer_for (const GstVideoInfo * video)
   cfg.format = L1L2STAB_FORMAT_GRAY8;
   cfg.width = video->width;
   cfg.height = video->height;
-  /* Some files give the rate of their timestamps, 90000, as the frame rate. */
+  /* Some files give the rate of their clock, 90000, as the frame rate. */
   cfg.frame_rate = (gdouble) video->fps_n / video->fps_d;
   if (cfg.frame_rate > 1000.0)
     cfg.frame_rate = 0.0;

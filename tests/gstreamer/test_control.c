@@ -89,7 +89,7 @@ noise_harness_new (L1L2StabOutputSize size)
 }
 
 /* The frames that the element renders, as GBytes. Their timestamps start at `base`. Before each frame its values are
- * set, if there are any. */
+ * set, unless `settings` is NULL. */
 static GPtrArray *
 run_element (GstHarness * h, const Settings * settings, GstClockTime base)
 {

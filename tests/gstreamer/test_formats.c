@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The planes of every format, compared with a warp in floating point that knows each format by GStreamer's description.
- * It uses the maps that the library reports of the same frames. */
+/* The planes of every format, compared with a warp in floating point that takes the layout of each format from
+ * GStreamer. It uses the maps that the library reports of the same frames. */
 #include <math.h>
 
 #include <l1l2stab/l1l2stab.h>
@@ -8,9 +8,9 @@
 #include "stabharness.h"
 
 #define WINDOW 4
-#define N_FRAMES 5              /* the last but one is looked at */
+#define N_FRAMES 5              /* the last frame but one is compared */
 #define TILE 256
-#define MAX_SAMPLES 8000       /* of a component that are looked at */
+#define MAX_SAMPLES 8000       /* of a component that are compared */
 
 static const struct
 {

@@ -25,7 +25,7 @@ is_whole (GstBuffer * buffer, guint index)
   return whole;
 }
 
-/* Fails unless the output frames are whole from frame `start` on, except for the last `rest`. */
+/* Fails unless the output frames from frame `start` on are whole source frames, except for the last `rest`. */
 static void
 assert_whole (GstHarness * h, guint start, guint rest)
 {

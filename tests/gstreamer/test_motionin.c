@@ -79,7 +79,7 @@ GST_START_TEST (skipped_frames_and_reverse_playback_find_their_motion)
 
 GST_END_TEST;
 
-/* A roll, given in square pixels, is in samples what the caps' pixels make of it. */
+/* A roll that is given in square pixels becomes a map of samples that depends on the caps' pixel aspect ratio. */
 GST_START_TEST (the_pixel_aspect_ratio_of_the_caps_reaches_the_library)
 {
   static const struct

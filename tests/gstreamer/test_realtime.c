@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* In real time, on a machine with time to spare: the latency tracer measures the latency that is reported, and a
+/* In real time, so the machine must not be busy: the latency tracer measures the latency that is reported, and a
  * synchronized sink gets no frame too late. test_time.c has the same with a test clock. */
 #include <stdlib.h>
 

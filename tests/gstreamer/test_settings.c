@@ -90,7 +90,7 @@ GST_START_TEST (the_ranges_are_the_librarys)
 
 GST_END_TEST;
 
-/* GLib says WARNING up to 2.74 and CRITICAL in 2.84; the test runs with criticals fatal. */
+/* GLib logs a WARNING up to 2.74 and a CRITICAL in 2.84. Criticals are fatal in this test. */
 static void
 assert_window_is_refused (GstElement * element, gint window)
 {

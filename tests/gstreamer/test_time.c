@@ -48,7 +48,8 @@ pull_in_time (GstHarness * h, GstClockTime pts)
   gst_buffer_unref (buffer);
 }
 
-/* Ends the waits on the clock one by one up to this time. The first one can be for a frame that has already left. */
+/* Advances the clock to this time, ending the waits on it one by one. The first wait can be for a frame that has
+ * already left. */
 static void
 crank_to (GstHarness * h, GstClockTime time)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A small shaky clip, and the public header's loop over it with every promise checked on the way. */
+/* A small shaky clip, and the public header's loop over it, which checks everything that the header promises. */
 #ifndef STABILIZER_FIXTURE_H
 #define STABILIZER_FIXTURE_H
 
@@ -20,7 +20,7 @@ typedef struct Clip {
     int frames;
 } Clip;
 
-/* A slow pan with a shake. Made once a process: preparing the scene takes longer than all else here. */
+/* A slow pan with a shake. It is made once per process, because preparing the scene takes most of the time. */
 static inline Synth *the_scene(void)
 {
     static Synth *scene;
@@ -103,11 +103,11 @@ static inline int stabilize(L1L2Stab *s, Clip *clip, L1L2StabInfo *info, SynthPi
             void *opaque = NULL;
             const L1L2StabResult ready = l1l2stab_peek(s, &pts, &opaque);
             if (ready == L1L2STAB_OK) {
-                ck_assert_int_eq(pts, 1000 + 33 * pulled); /* in order, its own */
+                ck_assert_int_eq(pts, 1000 + 33 * pulled); /* frames come in order, with their own opaque */
                 ck_assert_ptr_eq(opaque, &clip->released[pulled]);
                 ck_assert_int_eq(clip->released[pulled], 0);
             }
-            if (out && pulled < clip->frames) { /* the caller's array ends there */
+            if (out && pulled < clip->frames) { /* the end of the caller's array */
                 memcpy(picture.data, out[pulled].data, sizeof picture.data);
                 memcpy(picture.stride, out[pulled].stride, sizeof picture.stride);
             }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What crosses the public border: sizes of structs, addresses, given motions, settings that outlive a reset. */
+/* What passes between the caller and the library: struct sizes, addresses, given motions, and settings that a reset
+ * keeps. */
 #include <stdio.h>
 
 #include "common/rng.h"

@@ -56,7 +56,7 @@ static void new_pictures(SynthPicture *out, const L1L2StabConfig *cfg)
         out[t] = synth_picture_new(cfg->format, width, height);
 }
 
-START_TEST(a_bypass_is_at_once_and_soft_and_leaves_the_path_alone)
+START_TEST(a_bypass_begins_at_once_changes_smoothly_and_leaves_the_path_as_it_is)
 {
     const L1L2StabConfig cfg = small_config(WINDOW);
     const int on = 20, off = 70;
@@ -95,7 +95,7 @@ START_TEST(a_bypass_is_at_once_and_soft_and_leaves_the_path_alone)
 }
 END_TEST
 
-START_TEST(no_sample_leaves_the_source_on_the_way)
+START_TEST(no_sample_leaves_the_source_during_the_transition)
 {
     L1L2StabConfig cfg = small_config(WINDOW);
     cfg.output_size = (L1L2StabOutputSize)_i;
@@ -209,9 +209,9 @@ int main(void)
     TCase *tc = tcase_create("bypass");
     tcase_set_timeout(tc, 60);
     tcase_add_test(tc, a_fade_is_exact_at_both_ends_and_never_jumps);
-    tcase_add_test(tc, a_bypass_is_at_once_and_soft_and_leaves_the_path_alone);
+    tcase_add_test(tc, a_bypass_begins_at_once_changes_smoothly_and_leaves_the_path_as_it_is);
     tcase_add_test(tc, an_untouched_frame_is_the_source_byte_for_byte_in_every_format);
-    tcase_add_loop_test(tc, no_sample_leaves_the_source_on_the_way, L1L2STAB_OUTPUT_SIZE_INPUT,
+    tcase_add_loop_test(tc, no_sample_leaves_the_source_during_the_transition, L1L2STAB_OUTPUT_SIZE_INPUT,
                         L1L2STAB_OUTPUT_SIZE_CROP + 1);
     tcase_add_test(tc, reported_motions_that_are_given_again_make_the_same_path_to_the_bit);
     suite_add_tcase(suite, tc);

@@ -174,7 +174,7 @@ START_TEST(a_config_from_a_newer_header_is_accepted_if_it_sets_nothing_new)
 }
 END_TEST
 
-START_TEST(every_result_has_its_line)
+START_TEST(every_result_has_a_text_of_its_own)
 {
     for (int r = L1L2STAB_ERR_BACKEND; r <= L1L2STAB_EOS; r++)
         ck_assert_str_ne(l1l2stab_strerror((L1L2StabResult)r), "unknown result");
@@ -196,7 +196,7 @@ int main(void)
     tcase_add_test(tcase, the_output_size_follows_the_crop);
     tcase_add_test(tcase, a_config_from_an_older_header_gets_defaults_for_what_it_lacks);
     tcase_add_test(tcase, a_config_from_a_newer_header_is_accepted_if_it_sets_nothing_new);
-    tcase_add_test(tcase, every_result_has_its_line);
+    tcase_add_test(tcase, every_result_has_a_text_of_its_own);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

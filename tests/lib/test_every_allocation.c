@@ -137,7 +137,7 @@ static L1L2StabFrame frame_of(const SynthPicture *planes, int t)
     return frame;
 }
 
-/* Where a call that failed is to be made again. *tries counts down. */
+/* True if a call that failed is to be made again. *tries counts down. */
 static bool again(L1L2StabResult result, int *tries, Fault *fault)
 {
     if (result >= L1L2STAB_OK)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The step from frame to frame by the timestamps, and what the library makes of it. No pixels: motions are given. */
+/* The step from frame to frame by the timestamps, and its effect on the path. There are no pixels: motions are
+ * given. */
 #include <math.h>
 #include <string.h>
 
@@ -57,7 +58,7 @@ START_TEST(a_step_is_bounded_to_a_quarter_and_to_four_frames)
 }
 END_TEST
 
-START_TEST(equal_backward_and_missing_timestamps_are_one_frame)
+START_TEST(equal_backward_and_missing_timestamps_count_as_one_frame)
 {
     ck_assert(LAST_STEP(at(0), at(0)) == 1.0);
     ck_assert(LAST_STEP(at(0), at(100), at(30)) == 1.0);
@@ -65,12 +66,12 @@ START_TEST(equal_backward_and_missing_timestamps_are_one_frame)
     ck_assert(LAST_STEP(at(0), L1L2STAB_NO_PTS) == 1.0);
     ck_assert(LAST_STEP(at(0), L1L2STAB_NO_PTS, at(100)) == 1.0);
     ck_assert(LAST_STEP(L1L2STAB_NO_PTS, L1L2STAB_NO_PTS) == 1.0);
-    ck_assert(LAST_STEP(at(0), at(100), at(30), at(130)) == 1.0); /* the way back from the error */
+    ck_assert(LAST_STEP(at(0), at(100), at(30), at(130)) == 1.0); /* the first step forward after the error */
     ck_assert_near(LAST_STEP(at(0), at(0), at(2 * frame_ms)), 2.0, 1e-6);
 }
 END_TEST
 
-START_TEST(numbers_that_are_no_times_are_one_frame)
+START_TEST(numbers_that_are_not_times_count_as_one_frame)
 {
     ck_assert(LAST_STEP(0, 1) == 1.0);
     ck_assert(LAST_STEP(1000, 1033) == 1.0);
@@ -100,7 +101,7 @@ typedef struct Film {
     int frames;
     double x[FRAMES], y[FRAMES];
     int64_t pts[FRAMES];
-    L1L2StabInfo info[FRAMES]; /* what came out */
+    L1L2StabInfo info[FRAMES]; /* the output */
 } Film;
 
 static void stabilize(Film *film)
@@ -150,7 +151,7 @@ static bool same_path(const Film *a, const Film *b)
     return true;
 }
 
-START_TEST(timestamps_that_tell_of_a_constant_rate_leave_the_path_as_it_is_to_the_bit)
+START_TEST(timestamps_of_a_constant_rate_do_not_change_the_path_by_a_bit)
 {
     Film *plain = calloc(1, sizeof *plain), *film = calloc(1, sizeof *film);
     L1L2Rng rng = l1l2_rng_seeded(7);
@@ -218,11 +219,11 @@ int main(void)
     tcase_add_test(tcase, a_step_counts_by_its_time);
     tcase_add_test(tcase, a_deviation_below_2_ms_is_exactly_one_frame);
     tcase_add_test(tcase, a_step_is_bounded_to_a_quarter_and_to_four_frames);
-    tcase_add_test(tcase, equal_backward_and_missing_timestamps_are_one_frame);
-    tcase_add_test(tcase, numbers_that_are_no_times_are_one_frame);
+    tcase_add_test(tcase, equal_backward_and_missing_timestamps_count_as_one_frame);
+    tcase_add_test(tcase, numbers_that_are_not_times_count_as_one_frame);
     tcase_add_test(tcase, falling_timestamps_count_by_their_time);
     tcase_add_test(tcase, a_step_is_one_frame_where_the_rate_is_unknown_or_a_path_starts);
-    tcase_add_test(tcase, timestamps_that_tell_of_a_constant_rate_leave_the_path_as_it_is_to_the_bit);
+    tcase_add_test(tcase, timestamps_of_a_constant_rate_do_not_change_the_path_by_a_bit);
     tcase_add_test(tcase, a_gap_of_a_hundred_frames_gives_the_path_of_a_gap_of_five);
     tcase_add_test(tcase, a_path_is_steady_in_time_where_frames_are_missing);
     suite_add_tcase(suite, tcase);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Every allocation of the library's own fails once: create says so and leaves nothing behind; a running instance makes
- * none at all. Those of the imaging library fail beside the caller, while a frame is tracked: no frame is lost. */
+/* Each of the library's own allocations fails in turn: create reports it and leaks nothing. A running instance
+ * allocates nothing. OpenCV's allocations fail on the thread that tracks a frame: no frame is lost. */
 #include <errno.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -14,8 +14,8 @@
 
 enum { FRAMES = 40 };
 
-/* OpenCV allocates its pictures with posix_memalign(). The one below replaces that of the C library, because symbols of
- * the program have precedence. */
+/* OpenCV allocates its pictures with posix_memalign(). The function below replaces the C library's, because the
+ * program's symbols have precedence. */
 static atomic_bool failing;
 static atomic_int refused;
 
@@ -65,7 +65,7 @@ START_TEST(create_survives_the_failure_of_any_allocation)
 }
 END_TEST
 
-START_TEST(a_running_instance_takes_no_memory)
+START_TEST(a_running_instance_allocates_nothing)
 {
     const L1L2StabConfig cfg = small_config();
     SynthConfig scene = synth_defaults();
@@ -112,8 +112,8 @@ static void count_release(void *run)
     ((Run *)run)->released++;
 }
 
-/* Counts the error of measuring a frame. It is returned once, by this call alone. Memory is there again as soon as some
- * was refused: with two threads the next frame may be measured by then, and fail too. */
+/* Counts the error of measuring a frame. It is returned once, by this call alone. Memory is available again after an
+ * allocation has failed. With two threads the next frame may already be measured by then, and fail too. */
 static void take_error(Run *run)
 {
     if (refused > 0)
@@ -196,7 +196,7 @@ START_TEST(an_error_of_measuring_is_returned_once_starts_a_path_and_loses_no_fra
             }
         ck_assert_int_le(starts, run.errors);
         ck_assert_int_eq(flagged, run.errors);
-        /* The frame before may still be tracked, and one that takes no memory does not fail. */
+        /* The frame before may still be tracked, and a frame that needs no memory does not fail. */
         for (int t = 1; t < first_failing - 1; t++)
             ck_assert(!(run.flags[t] & L1L2STAB_INFO_PATH_START));
         path_starts += starts;
@@ -207,7 +207,7 @@ END_TEST
 
 int main(int argc, char **argv)
 {
-    /* When it is loaded the imaging library decides how it allocates. */
+    /* OpenCV decides when it is loaded how it allocates. */
     if (argc > 0 && !getenv("OPENCV_ENABLE_MEMALIGN")) {
         setenv("OPENCV_ENABLE_MEMALIGN", "1", 1);
         execvp(argv[0], argv);
@@ -216,7 +216,7 @@ int main(int argc, char **argv)
     TCase *tcase = tcase_create("oom");
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, create_survives_the_failure_of_any_allocation);
-    tcase_add_test(tcase, a_running_instance_takes_no_memory);
+    tcase_add_test(tcase, a_running_instance_allocates_nothing);
     tcase_add_loop_test(tcase, an_error_of_measuring_is_returned_once_starts_a_path_and_loses_no_frame, 0, 2);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What a viewer sees: the shake that is left against the truth, and the rendered picture against an ideal camera's. */
+/* What a viewer sees: the remaining shake compared with the truth, and the rendered picture compared with that of an
+ * ideal camera. */
 #include <pthread.h>
 
 #include "stabilizer_fixture.h"
@@ -151,7 +152,8 @@ START_TEST(a_frame_is_released_only_when_nobody_reads_it_any_more)
             s = create(&cfg);
         }
         ck_assert_int_eq(clip->released[t], round / 8 + 1);
-        memset(clip->picture[t].data[0], round, clip->picture[t].size); /* a thread sanitizer sees who reads it yet */
+        /* a thread sanitizer reports if the frame is still being read */
+        memset(clip->picture[t].data[0], round, clip->picture[t].size);
     }
     l1l2stab_free(&s);
     free_clip(clip);

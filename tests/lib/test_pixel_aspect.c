@@ -35,7 +35,7 @@ static double stabilize(int width, double aspect, L1L2StabRollingShutter shutter
     cfg.crop_ratio = 0.8;
     cfg.window = FRAMES;
     cfg.threads = 1;
-    cfg.analysis_size = 320; /* as many samples are left of each film */
+    cfg.analysis_size = 320; /* each film keeps the same number of samples */
     cfg.rolling_shutter = shutter;
     ck_assert_int_eq(l1l2stab_create(&s, &cfg), L1L2STAB_OK);
     L1L2AreaScaler *squeeze = l1l2_image_scale_new(l1l2_image_format_info(L1L2STAB_FORMAT_GRAY8), SHOWN_WIDTH, HEIGHT,
@@ -78,7 +78,7 @@ START_TEST(a_squeezed_film_has_the_same_motion)
 }
 END_TEST
 
-/* Squeezed and not told so, a roll is no similarity. */
+/* If the library does not know that the film is squeezed, a roll is not a similarity. */
 START_TEST(without_the_aspect_a_roll_is_measured_worse)
 {
     static L1L2StabInfo info[FRAMES];

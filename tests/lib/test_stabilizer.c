@@ -57,7 +57,7 @@ START_TEST(hurried_frames_are_ready_at_once_and_those_after_them_wait_again)
         ck_assert_int_eq(l1l2stab_push(s, &in), L1L2STAB_OK);
         const int due = t == 5 ? 2 : t == 17 ? 100 : 0;
         ck_assert_int_eq(l1l2stab_hurry(s, due), L1L2STAB_OK);
-        ck_assert_int_eq(l1l2stab_hurry(s, due / 2), L1L2STAB_OK); /* no more than were asked for already */
+        ck_assert_int_eq(l1l2stab_hurry(s, due / 2), L1L2STAB_OK); /* not more frames than were asked for */
         const int before = pulled, held = t + 1 - pulled;
         while (l1l2stab_peek(s, NULL, NULL) == L1L2STAB_OK) {
             ck_assert_int_eq(l1l2stab_pull(s, NULL, &info), L1L2STAB_OK);

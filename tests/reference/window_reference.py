@@ -17,15 +17,15 @@ ORDERS = (1, 2, 3)
 
 
 def difference(times):
-    """Weights on the newest to the oldest of k + 1 frames: the k-th derivative, k! times the divided difference, times
-    the part of time that it stands for, a k-th of the span. 1 -1; 1 -2 1; 1 -3 3 -1 where the times are even."""
+    """Coefficients of k + 1 frames, the newest first: the k-th derivative, which is k! times the divided difference,
+    times the time that it stands for, which is a k-th of the span. 1 -1; 1 -2 1; 1 -3 3 -1 for even times."""
     k = len(times) - 1
     divided = [1 / np.prod([a - b for j, b in enumerate(times) if j != i]) for i, a in enumerate(times)]
     return [math.factorial(k) * w * (times[-1] - times[0]) / k for w in divided][::-1]
 
 
 def shares(times, past):
-    """Part of time of each frame of the window. The steps before the path and behind the window count as one frame."""
+    """Part of time of each frame of the window. The steps before the path and after the window count as one frame."""
     steps = np.concatenate([[1], np.diff(times), [1]])[past:]
     return (steps[:-1] + steps[1:]) / 2
 

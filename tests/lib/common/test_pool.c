@@ -33,7 +33,7 @@ START_TEST(every_part_runs_exactly_once_whatever_the_threads)
 }
 END_TEST
 
-/* Plain memory: the pool itself must order what the parts wrote before what the caller reads. */
+/* No atomics: the pool itself must make what the parts wrote visible to the caller. */
 static void write_square(void *context, int index)
 {
     int *squares = context;
@@ -77,7 +77,7 @@ START_TEST(a_pool_of_one_runs_on_the_callers_thread)
 }
 END_TEST
 
-static void meet(void *context, int index)
+static void wait_for_the_others(void *context, int index)
 {
     pthread_barrier_wait(context);
 }
@@ -90,7 +90,7 @@ START_TEST(as_many_parts_run_at_once_as_there_are_threads)
     L1L2Pool *pool = l1l2_pool_create(3);
     ck_assert_int_eq(l1l2_pool_threads(pool), 3);
     for (int round = 0; round < 20; round++)
-        l1l2_pool_run(pool, 3, meet, &barrier);
+        l1l2_pool_run(pool, 3, wait_for_the_others, &barrier);
     l1l2_pool_free(pool);
     pthread_barrier_destroy(&barrier);
 }
@@ -127,7 +127,7 @@ START_TEST(signals_are_left_to_the_programs_own_threads)
 }
 END_TEST
 
-START_TEST(zero_threads_means_the_cores_there_are)
+START_TEST(zero_threads_means_one_per_core)
 {
     L1L2Pool *pool = l1l2_pool_create(0);
     ck_assert_int_ge(l1l2_pool_threads(pool), 1);
@@ -138,7 +138,7 @@ END_TEST
 
 typedef struct Task {
     pthread_t caller;
-    pthread_barrier_t *barrier; /* NULL: nobody is met */
+    pthread_barrier_t *barrier; /* on which the task waits; NULL: it does not wait */
     int calls;
     bool elsewhere;
 } Task;
@@ -152,7 +152,7 @@ static void do_task(void *context)
     task->elsewhere = !pthread_equal(pthread_self(), task->caller);
 }
 
-/* Plain memory again: join must order the task before what follows it. */
+/* No atomics here either: join must make what the task wrote visible to the caller. */
 START_TEST(a_task_is_done_once_when_it_is_joined_whatever_the_threads)
 {
     L1L2Pool *pool = l1l2_pool_create(_i + 1);
@@ -166,7 +166,7 @@ START_TEST(a_task_is_done_once_when_it_is_joined_whatever_the_threads)
         ck_assert_int_eq(task.calls, 1);
         for (int i = 0; round % 2 && i < 20; i++)
             ck_assert_int_eq(atomic_load(&counts[i]), 1);
-        l1l2_pool_join(pool); /* nothing left */
+        l1l2_pool_join(pool); /* there is no task any more */
         ck_assert_int_eq(task.calls, 1);
     }
     l1l2_pool_free(pool);
@@ -185,13 +185,13 @@ START_TEST(a_pool_of_one_does_the_task_at_once)
 }
 END_TEST
 
-static void meet_once(void *context, int index)
+static void wait_once_for_the_task(void *context, int index)
 {
     if (index == 0)
         pthread_barrier_wait(context);
 }
 
-/* Ends only if a run goes on beside the task. */
+/* Waits at the barrier for the task: this ends only if a run works while the task does. */
 START_TEST(a_run_and_a_task_go_on_at_the_same_time)
 {
     pthread_barrier_t barrier;
@@ -200,7 +200,7 @@ START_TEST(a_run_and_a_task_go_on_at_the_same_time)
     for (int round = 0; round < 20; round++) {
         Task task = {.caller = pthread_self(), .barrier = &barrier};
         l1l2_pool_start(pool, do_task, &task);
-        l1l2_pool_run(pool, 5, meet_once, &barrier);
+        l1l2_pool_run(pool, 5, wait_once_for_the_task, &barrier);
         l1l2_pool_join(pool);
         ck_assert(task.elsewhere);
     }
@@ -230,7 +230,7 @@ int main(void)
     tcase_add_test(tc, a_pool_of_one_runs_on_the_callers_thread);
     tcase_add_test(tc, as_many_parts_run_at_once_as_there_are_threads);
     tcase_add_test(tc, signals_are_left_to_the_programs_own_threads);
-    tcase_add_test(tc, zero_threads_means_the_cores_there_are);
+    tcase_add_test(tc, zero_threads_means_one_per_core);
     tcase_add_loop_test(tc, a_task_is_done_once_when_it_is_joined_whatever_the_threads, 0, 4);
     tcase_add_test(tc, a_pool_of_one_does_the_task_at_once);
     tcase_add_test(tc, a_run_and_a_task_go_on_at_the_same_time);

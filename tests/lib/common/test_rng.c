@@ -22,7 +22,7 @@ START_TEST(neighboring_seeds_give_different_numbers)
 }
 END_TEST
 
-START_TEST(below_gives_each_number_below_its_bound_as_often)
+START_TEST(below_gives_each_number_below_its_bound_equally_often)
 {
     enum { BOUND = 7, DRAWS = 70000 };
     L1L2Rng rng = l1l2_rng_seeded(3);
@@ -51,7 +51,7 @@ int main(void)
     TCase *tc = tcase_create("rng");
     tcase_add_test(tc, the_numbers_are_those_of_pcg32);
     tcase_add_test(tc, neighboring_seeds_give_different_numbers);
-    tcase_add_test(tc, below_gives_each_number_below_its_bound_as_often);
+    tcase_add_test(tc, below_gives_each_number_below_its_bound_equally_often);
     tcase_add_test(tc, below_one_is_zero);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);

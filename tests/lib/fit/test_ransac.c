@@ -23,7 +23,7 @@ static double uniform(double low, double high)
     return low + (high - low) * (l1l2_rng_next(&rng) / 4294967296.0);
 }
 
-/* Roughly normal: the sum of twelve. */
+/* Nearly normal: the sum of twelve uniform numbers. */
 static double normal(double sigma)
 {
     double sum = -6.0;
@@ -37,7 +37,7 @@ static L1L2Point some_point(void)
     return (L1L2Point){uniform(-0.43, 0.43), uniform(-0.24, 0.24)};
 }
 
-/* COUNT pairs of which the last ones go anywhere but to where the map takes them. */
+/* COUNT pairs. The last ones are outliers: they go anywhere but to where the map takes them. */
 static void make_pairs(const L1L2Mat *map, double sigma, double outlier_share)
 {
     rng = l1l2_rng_seeded(5);
@@ -55,7 +55,7 @@ static void make_pairs(const L1L2Mat *map, double sigma, double outlier_share)
     }
 }
 
-/* How far the corners of the frame are off. */
+/* The error of the map at the corners of the frame. */
 static double error_of(const L1L2Mat *fit, const L1L2Mat *truth)
 {
     return l1l2_mat_corner_distance(fit, truth, 0.436, 0.245);
@@ -236,7 +236,7 @@ START_TEST(the_identity_is_returned_if_no_similarity_exists)
     make_pairs(&identity, 0.0, 0.0);
     assert_no_similarity(0);
     assert_no_similarity(1);
-    for (int i = 0; i < COUNT; i++) /* all in one place, as good as */
+    for (int i = 0; i < COUNT; i++) /* all nearly in one place */
         pairs[i].from = pairs[i].to = (L1L2Point){0.1 + 0.1 * threshold * (i % 7), 0.1};
     assert_no_similarity(COUNT);
     for (int i = 0; i < COUNT; i++)

@@ -30,7 +30,7 @@ static Trial trial_new(L1L2StabFormat format, int width, int height, int out_wid
     L1L2Rng rng = l1l2_rng_seeded((uint64_t)(width * height));
     const uint32_t highest = (1u << t.format->depth) - 1;
     for (ptrdiff_t i = 0; i < t.stride * height / l1l2_image_format_bytes(t.format); i++) {
-        /* A third each: dark, bright, any level. */
+        /* a third of the levels is dark, a third bright, and a third anything */
         const uint32_t any = l1l2_rng_below(&rng, highest + 1), kind = l1l2_rng_below(&rng, 3);
         const uint32_t level = (kind == 0 ? any & 3 : kind == 1 ? highest - (any & 3) : any) << t.format->shift;
         if (l1l2_image_format_bytes(t.format) == 1)

@@ -45,7 +45,8 @@ START_TEST(samples_lie_where_the_header_says)
             for (int y = margin; y < l->height - margin; y++)
                 for (int x = margin; x < l->width - margin; x++) {
                     const double at_x = (x + 0.5) * l->step - 0.5, at_y = (y + 0.5) * l->step - 0.5;
-                    /* 0.5: what rounding down takes in the mean. 0.3: what it leaves of its pattern. */
+                    /* 0.5 is the mean of what rounding down takes off. 0.3 is a margin for the pattern that rounding
+                     * leaves. */
                     ck_assert_near(l->sample[y * l->width + x], (3.0 * at_x + 4.0 * at_y) / 32 - 0.484, 0.6);
                 }
         }

@@ -68,7 +68,7 @@ START_TEST(eight_bits_are_left_as_they_are)
 }
 END_TEST
 
-START_TEST(a_picture_with_nothing_in_it_is_left_as_it_is)
+START_TEST(an_empty_picture_is_left_as_it_is)
 {
     L1L2LevelRange range = {0};
     fill(7000, 7030);
@@ -134,7 +134,7 @@ int main(void)
     tcase_add_test(tc, a_picture_of_few_levels_is_stretched_to_them_with_a_margin);
     tcase_add_test(tc, a_picture_that_uses_its_range_is_left_as_it_is);
     tcase_add_test(tc, eight_bits_are_left_as_they_are);
-    tcase_add_test(tc, a_picture_with_nothing_in_it_is_left_as_it_is);
+    tcase_add_test(tc, an_empty_picture_is_left_as_it_is);
     tcase_add_test(tc, a_few_dead_pixels_do_not_matter);
     tcase_add_test(tc, the_range_depends_on_the_last_30_pictures_only);
     tcase_add_test(tc, colors_are_mixed_to_gray);

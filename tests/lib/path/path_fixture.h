@@ -23,7 +23,7 @@ typedef struct Run {
     L1L2PathFrame out[MAX_FRAMES]; /* the path's rows: frame t is in row t */
 } Run;
 
-/* A path's config, and what each frame is pushed with. */
+/* The config of a path, and the values with which each frame is pushed. */
 typedef struct Setup {
     int width, height;
     double frame_rate, weights[3];
@@ -65,7 +65,7 @@ static inline void push_frame(L1L2Path *path, const Setup *setup, const Run *r, 
     l1l2_path_push(path, &(L1L2PathInput){&r->F[t], r->starts[t], setup->lambda, setup->crop_ratio, r->step[t]});
 }
 
-/* Whether frame t of the path was next, and decided. */
+/* True if the next frame of the path is frame t and is decided. */
 static inline bool pull(L1L2Path *path, const Run *r, int t)
 {
     const L1L2PathFrame *frame = l1l2_path_pull(path);

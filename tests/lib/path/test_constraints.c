@@ -64,7 +64,7 @@ START_TEST(the_rows_hold_exactly_where_the_definition_holds)
             l1l2_mat_inverse(C, &inverse);
             const double size = 1.0 + fabs(inverse.m[0]) + fabs(inverse.m[1]) + fabs(inverse.m[3]) + fabs(inverse.m[4]);
             if (size > 100.0)
-                continue; /* C is nearly singular: rounding alone would decide */
+                continue; /* C is nearly singular, so rounding would decide */
             l1l2_mat_to_q(&P, q);
             l1l2_path_constraint_rows(&crop, &C, G, lo, hi);
             for (int r = 0; r < l1l2_path_constraint_count(dim); r++) {
@@ -80,7 +80,7 @@ START_TEST(the_rows_hold_exactly_where_the_definition_holds)
                 ck_assert(!corners_inside(&crop, &B, 0.0) || !near_identity(&B, 0.0));
             inside += worst < 0.0;
         }
-        ck_assert_int_gt(inside, 500); /* both cases occurred */
+        ck_assert_int_gt(inside, 500); /* both cases must have occurred */
         ck_assert_int_lt(inside, 19000);
     }
 }

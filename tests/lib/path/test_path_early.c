@@ -150,7 +150,7 @@ START_TEST(after_a_stall_a_pan_has_its_speed_again)
     const Setup cfg = defaults();
     Run *r = shaky_run(900, 1.0, 0.0, 1);
     for (int t = 300; t < 310; t++)
-        r->hurry[t] = t < 309 ? 15 : 150; /* all that were held */
+        r->hurry[t] = t < 309 ? 15 : 150; /* all frames that were held */
     run(&cfg, r);
     ck_assert(r->out[309].early && !r->out[310].early);
     for (int t = 345; t < 750; t++)

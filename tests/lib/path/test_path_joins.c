@@ -90,7 +90,7 @@ START_TEST(joins_of_real_paths_are_no_rougher_than_the_path_between_them)
                rows[i]->worst[0], rows[i]->count[1] / 3);
     ck_assert_int_ge(continuous.count[1] / 3, 20);
     ck_assert_double_le(continuous.worst[1], continuous.worst[0]);
-    /* In the mean they are alike: the new frames at a join bend a path no more than other frames do. */
+    /* In the mean the two are alike: the path bends no more at a join than elsewhere. */
     ck_assert_double_le(continuous.sum[1] / continuous.count[1], 1.1 * continuous.sum[0] / continuous.count[0]);
     ck_assert_double_le(5.0 * continuous.sum[1] / continuous.count[1], blend.sum[1] / blend.count[1]);
 }

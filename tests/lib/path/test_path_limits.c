@@ -35,7 +35,7 @@ START_TEST(motions_that_no_camera_makes_give_finite_maps_inside)
         fallbacks += r->out[t].fallback;
     }
     ck_assert_int_gt(fallbacks, 0);
-    ck_assert(!r->out[399].fallback); /* the path has recovered */
+    ck_assert(!r->out[399].fallback); /* the path is normal again */
     free(r);
 }
 END_TEST
@@ -159,8 +159,8 @@ START_TEST(a_zoom_of_ten_and_jumps_of_half_a_frame_are_solved)
 }
 END_TEST
 
-/* A zoom of 1.5 a frame: C_t grows to 10^26 within a window of 150 frames, and neither solver converges. The bound on
- * OSQP's work is stated here anew, in iterations times components: 240,000 a window, 6,000 for each emitted frame. */
+/* A zoom of 1.5 a frame: C_t grows to 10^26 within a window of 150 frames, and neither solver converges. The expected
+ * bound on OSQP's work, in iterations times components, is 240,000 a window, 6,000 for each emitted frame. */
 START_TEST(a_window_that_does_not_converge_costs_a_bounded_number_of_iterations)
 {
     static const struct {

@@ -4,7 +4,7 @@
 
 #include "path/path_fixture.h"
 
-/* A run of an evenly spaced one's frames: those that `kept` says. Its steps are true. */
+/* A run that has only some frames of an evenly spaced run, those that are `kept`, with their true steps. */
 static Run *thinned(const Run *even, bool (*kept)(int t))
 {
     Run *r = new_run(0);

@@ -64,7 +64,7 @@ static bool read_map(FILE *file, int dim, double v[L1L2_DIM])
     return true;
 }
 
-/* The next window's motions; the file stands at its first "lambda" afterwards. */
+/* Reads the next window's motions. The next line of the file is then the first "lambda". */
 static bool read_window(FILE *file, Window *w)
 {
     char word[16];
@@ -98,7 +98,7 @@ static double corner_distance_px(const Window *w, const double q[L1L2_DIM], cons
            l1l2_mat_corner_distance(&found, expected, w->crop * crop.half_w, w->crop * crop.half_h);
 }
 
-/* least: the windows of translations, similarities and affine maps that the file must have. */
+/* least: how many windows of translations, similarities and affine maps the file must have at least. */
 static void against_the_reference(const char *path, L1L2StabSolver choice, int lambdas, const int least[3],
                                   double relative, double corner_px)
 {

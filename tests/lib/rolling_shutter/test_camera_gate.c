@@ -62,7 +62,7 @@ END_TEST
 
 START_TEST(a_subject_that_moves_by_itself_is_not_predicted_from_the_camera)
 {
-    const double strengths[] = {1.0, 0.1, 0.0}; /* handheld, on a stand, no motion */
+    const double strengths[] = {1.0, 0.1, 0.0}; /* handheld, on a tripod, without motion */
     for (int i = 0; i < 3; i++) {
         L1L2ShutterGate gate = {.known = 0};
         double explained = 0.0, all = 0.0;
@@ -71,7 +71,7 @@ START_TEST(a_subject_that_moves_by_itself_is_not_predicted_from_the_camera)
             const L1L2Mat F = motion_at(t, strengths[i]);
             l1l2_shutter_gate_push(&gate, &mixture, &F, &measurement);
             explained += measurement.explained[L1L2_VALIDATION_CAMERA], all += measurement.all[L1L2_VALIDATION_CAMERA];
-            /* Some of it may be predicted by chance for a while, but never enough for full confidence. */
+            /* A part of it may be predicted by chance for a while, but never enough for full confidence. */
             ck_assert_double_lt(l1l2_shutter_gate_share(&gate), 0.3);
         }
         ck_assert_double_lt(explained, 0.02 * all);

@@ -12,7 +12,7 @@ static const double pi = 3.14159265358979;
 static const double diagonal_px = 734.30239;
 static const L1L2ShutterSource source = {WIDTH, HEIGHT, 1.0};
 
-/* The records of the filter's frames: no two filters of a test live at a time. */
+/* The records of the filter's frames. A test has only one filter at a time. */
 static L1L2Mat motions[WINDOW + L1L2_SHUTTER_FILTER_PAST];
 static L1L2ShutterFrame frames_of_filter[WINDOW + L1L2_SHUTTER_FILTER_PAST];
 
@@ -53,7 +53,7 @@ static double camera_at(const Swing *s, double time)
     return s->amplitude * sin(2.0 * pi * s->frequency * time);
 }
 
-/* The exact motion of the bands from frame t to t-1; F is their mean. */
+/* The exact motion of the bands from frame t to frame t-1, and F, which is their mean. */
 static L1L2ShutterMeasurement measurement_of(const Swing *s, int t, L1L2Mat *F)
 {
     L1L2ShutterMeasurement measurement = {.explained = {1.0, 1.0, 1.0, 1.0}, .all = {1.0, 1.0, 1.0, 1.0}};

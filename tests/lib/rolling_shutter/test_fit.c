@@ -135,7 +135,7 @@ START_TEST(a_subject_on_40_percent_of_the_frame_leaves_no_residual)
 }
 END_TEST
 
-/* It is so slow that all of its tracks agree with F. */
+/* The subject is so slow that all of its tracks agree with F. */
 START_TEST(a_slow_subject_in_the_middle_fails_the_split_by_columns)
 {
     const L1L2Mat F = l1l2_mat_translation(0.01, 0.0);
@@ -222,7 +222,7 @@ START_TEST(the_number_of_pairs_has_no_limit)
 }
 END_TEST
 
-/* Each row is displaced by the shift of its own; all columns alike. */
+/* Each row has a shift of its own, which is the same in all columns. */
 static void displace_rows(Scene *s)
 {
     for (int i = 0; i < MAX; i++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The synthetic clips, on which other tests rely, move as their configs say. */
+/* The synthetic clips move as their configs say. Other tests rely on that. */
 #include <string.h>
 
 #include "checkx.h"

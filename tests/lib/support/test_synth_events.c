@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What happens in synthetic clips is what their configs say, seen in their pixels. */
+/* The pixels of synthetic clips show the events that their configs have. */
 #include "support/synth_fixture.h"
 
 static uint8_t plain[PIXELS], other[PIXELS], frame[PIXELS];
@@ -114,7 +114,7 @@ START_TEST(a_covered_lens_shows_nothing_and_then_the_scene_again)
             ck_assert_double_lt(deviation(frame), 3.0);
             ck_assert_double_lt(mean_level(frame), 40.0);
         } else {
-            ck_assert_double_gt(deviation(frame), 3.0); /* it is on its way */
+            ck_assert_double_gt(deviation(frame), 3.0); /* the hand is moving */
             ck_assert_double_gt(mean_difference(frame, plain), 3.0);
         }
     }
@@ -191,7 +191,7 @@ START_TEST(a_near_repetition_differs_by_its_noise_alone)
 }
 END_TEST
 
-START_TEST(a_frozen_picture_stands_while_the_time_goes_on)
+START_TEST(a_frozen_picture_is_repeated_while_the_time_goes_on)
 {
     Synth *frozen = clip_with(SYNTH_FREEZE, 6, 3, 0), *moving = clip_with(SYNTH_NONE, 0, 0, 0);
     for (int t = 1; t < 12; t++)
@@ -217,7 +217,7 @@ int main(void)
     tcase_add_test(tc, the_gain_scales_the_levels);
     tcase_add_test(tc, pulldown_shows_every_fifth_frame_twice_and_keeps_the_pace);
     tcase_add_test(tc, a_near_repetition_differs_by_its_noise_alone);
-    tcase_add_test(tc, a_frozen_picture_stands_while_the_time_goes_on);
+    tcase_add_test(tc, a_frozen_picture_is_repeated_while_the_time_goes_on);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);
 }

@@ -7,7 +7,7 @@ enum { SECONDS = 100, RATE = 60, SAMPLES = SECONDS * RATE, X = 0, Y = 1 };
 
 static double path[2][SAMPLES];
 
-/* The path of one hold, one unit of shake, its mean taken off. */
+/* The path of one hold with one unit of shake, less its mean. */
 static void record(SynthHold hold)
 {
     SynthConfig cfg = synth_defaults();
@@ -25,7 +25,7 @@ static void record(SynthHold hold)
     synth_free(s);
 }
 
-/* The power of [from, to) Hz, as part of all. */
+/* The power in [from, to) Hz as a part of the whole power. */
 static double band(int axis, double from, double to)
 {
     double inside = 0.0, all = 0.0;
@@ -43,7 +43,7 @@ static double band(int axis, double from, double to)
     return inside / all;
 }
 
-/* The frequency of most power in [from, to) Hz. */
+/* The frequency in [from, to) Hz that has the most power. */
 static double peak(int axis, double from, double to)
 {
     double best = from;

@@ -15,7 +15,7 @@ START_TEST(ten_bits_show_the_same_picture_more_finely)
         synth_render_gray10(s, 3, deep, sizeof deep[0] * WIDTH);
         int finer = 0;
         for (int i = 0; i < PIXELS; i++) {
-            /* half a level of rounding, an eighth of the finer one; with noise the same once more, and white clips */
+            /* the rounding of 8 bits and of 10 bits; with noise twice that, and white is clipped */
             ck_assert_near(frame[i], deep[i] / 4.0, noisy ? 1.26 : 0.626);
             finer += deep[i] % 4 != 0;
         }
@@ -25,7 +25,7 @@ START_TEST(ten_bits_show_the_same_picture_more_finely)
 }
 END_TEST
 
-/* A format of more bits, and the one of eight that is laid out alike. */
+/* A format of more bits, and the format of eight bits with the same layout. */
 typedef struct Twins {
     L1L2StabFormat deep, eight;
     int depth, shift;
@@ -82,7 +82,7 @@ START_TEST(the_noise_has_the_strength_that_was_asked_for_at_each_depth)
 }
 END_TEST
 
-START_TEST(coding_rounds_the_levels_otherwise_in_each_frame)
+START_TEST(coding_rounds_the_levels_differently_in_each_frame)
 {
     SynthConfig cfg = small_clip();
     cfg.repeat_every = 5;
@@ -143,7 +143,7 @@ START_TEST(a_logo_stays_in_its_corner_and_has_the_contrast_of_letters)
 }
 END_TEST
 
-/* Has the box around digit k (0 the first of six) changed between two frames? */
+/* True if the box around digit k, from 0 to 5, changed between two frames. */
 static bool digit_changes(const Synth *s, int k, int a, int b)
 {
     const double block = HEIGHT / 160.0, left = (4 + 6 * k) * block;
@@ -203,7 +203,7 @@ int main(void)
     tcase_add_test(tc, ten_bits_show_the_same_picture_more_finely);
     tcase_add_loop_test(tc, formats_of_more_bits_show_the_same_in_all_planes, 0, sizeof twins / sizeof twins[0]);
     tcase_add_test(tc, the_noise_has_the_strength_that_was_asked_for_at_each_depth);
-    tcase_add_test(tc, coding_rounds_the_levels_otherwise_in_each_frame);
+    tcase_add_test(tc, coding_rounds_the_levels_differently_in_each_frame);
     tcase_add_test(tc, a_logo_stays_in_its_corner_and_has_the_contrast_of_letters);
     tcase_add_test(tc, a_timecode_counts_the_frames);
     tcase_add_test(tc, bars_are_black_and_the_picture_between_them_is_as_without);

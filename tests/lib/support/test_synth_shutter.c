@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The rolling shutter of the synthetic clips: each row is a row of what a camera sees that takes all rows at once. */
+/* The rolling shutter of the synthetic clips: each row equals that row of a picture that a camera with a global shutter
+ * takes at the row's time. */
 #include <string.h>
 
 #include "checkx.h"
@@ -32,7 +33,7 @@ START_TEST(each_row_is_seen_from_where_the_camera_is_at_its_time)
             synth_camera_at(s, 4.0 + 0.03 * 30.0 * ((j + 0.5) * pixels / HEIGHT - 0.5), M);
             synth_render_view(s, M, WIDTH, HEIGHT, view.format, view.data, view.stride);
             ck_assert_mem_eq(frame.data[plane] + at, view.data[plane] + at, size);
-            synth_camera(s, 4, M); /* all at once gives another picture */
+            synth_camera(s, 4, M); /* a global shutter gives another picture */
             synth_render_view(s, M, WIDTH, HEIGHT, view.format, view.data, view.stride);
             if (abs(j * pixels - HEIGHT / 2) > 8)
                 ck_assert_mem_ne(frame.data[plane] + at, view.data[plane] + at, size);

@@ -11,7 +11,7 @@ static SynthConfig still_clip(void)
     return cfg;
 }
 
-/* How much a around (x, y) differs from b around (x + dx, y). */
+/* The mean difference between a around (x, y) and b around (x + dx, y). */
 static int block_difference(const uint8_t *a, const uint8_t *b, int x, int y, int dx)
 {
     int sum = 0;
@@ -21,7 +21,7 @@ static int block_difference(const uint8_t *a, const uint8_t *b, int x, int y, in
     return sum;
 }
 
-START_TEST(nearer_layers_move_farther_and_the_scene_as_the_camera)
+START_TEST(nearer_layers_move_farther_and_the_scene_moves_as_the_camera_does)
 {
     SynthConfig cfg = still_clip();
     cfg.pan_x = 4.0, cfg.parallax = 1.0;
@@ -48,7 +48,7 @@ START_TEST(nearer_layers_move_farther_and_the_scene_as_the_camera)
 }
 END_TEST
 
-/* Frames of the same moment with and without a foreground. */
+/* A frame at one time, with and without a foreground. */
 static double covered_share(const Synth *with, const Synth *without, int t)
 {
     gray(without, t, plain);
@@ -62,7 +62,7 @@ static double covered_share(const Synth *with, const Synth *without, int t)
 START_TEST(a_mover_covers_its_part_of_the_frame)
 {
     SynthConfig cfg = small_clip();
-    cfg.pan_x = 3.0; /* the camera goes with it */
+    cfg.pan_x = 3.0; /* the camera pans with the mover */
     Synth *without = synth_new(&cfg);
     for (double share = 0.1; share < 0.75; share += 0.2) {
         cfg.foreground = share, cfg.movers = 1, cfg.mover_speed = 2.0;
@@ -87,7 +87,7 @@ START_TEST(a_mover_has_the_speed_that_was_asked_for)
             block_difference(frame, plain, WIDTH / 2, HEIGHT / 2, best))
             best = dx;
     ck_assert_int_eq(best, -3); /* what is here was 3 px to the left */
-    ck_assert_int_eq(block_difference(frame, plain, 5, 5, 0), 0); /* and the scene stands */
+    ck_assert_int_eq(block_difference(frame, plain, 5, 5, 0), 0); /* and the scene does not move */
 }
 END_TEST
 
@@ -175,7 +175,7 @@ int main(void)
     Suite *suite = suite_create("synth_view");
     TCase *tc = tcase_create("synth_view");
     tcase_set_timeout(tc, 60);
-    tcase_add_test(tc, nearer_layers_move_farther_and_the_scene_as_the_camera);
+    tcase_add_test(tc, nearer_layers_move_farther_and_the_scene_moves_as_the_camera_does);
     tcase_add_test(tc, a_mover_covers_its_part_of_the_frame);
     tcase_add_test(tc, a_mover_has_the_speed_that_was_asked_for);
     tcase_add_test(tc, walkers_come_and_go);

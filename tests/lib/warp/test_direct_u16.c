@@ -102,8 +102,8 @@ START_TEST(the_arithmetic_is_exact_to_a_small_part_of_a_level)
     for (int d = 0; d < DEPTHS; d++) {
         const RunPair pair = pair_of(&kernel, 1, depths[d]);
         L1L2WarpPlane src = plane_new(&rng, &pair, 60, 40, 0);
-        /* A row's cut takes up to one unit of its fraction, and half of that is given back: times the sum of the
-         * column's |weights|, 1.55 at most. */
+        /* Cutting a row takes off up to one unit of its fraction, of which half is added again. The sum of the column's
+         * |weights|, at most 1.55, multiplies the error. */
         const double cut = depths[d][0] > L1L2_WARP_DIRECT_U16_NARROW ? 0.02 : 0.78 / (1 << (14 - depths[d][0]));
         double mean = 0.0;
         for (int round = 0; round < 4000; round++) {

@@ -16,7 +16,8 @@ static double between(L1L2Rng *rng, double low, double high)
     return low + (high - low) * (l1l2_rng_next(rng) / 4294967296.0);
 }
 
-/* From inside or a little outside, in pieces of random lengths: one as of an affine map, several as of a bent mesh. */
+/* A scanline that begins inside or a little outside the plane. It has pieces of random lengths: one, as for an affine
+ * map, or several, as for a mesh. */
 static L1L2WarpScanline random_scanline(L1L2Rng *rng, const L1L2WarpPlane *src, int taps, int pieces)
 {
     L1L2WarpScanline scanline = {.count = 1 + (int)l1l2_rng_below(rng, MAX_COUNT)};

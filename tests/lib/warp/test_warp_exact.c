@@ -237,7 +237,7 @@ START_TEST(a_smaller_output_is_the_middle_of_the_full_one)
 }
 END_TEST
 
-START_TEST(maps_to_nowhere_give_pixels_of_the_picture)
+START_TEST(maps_far_outside_give_pixels_of_the_picture)
 {
     const L1L2Mat maps[] = {
         l1l2_mat_translation(1e9, 1e9),        l1l2_mat_translation(1e300, 1e300),
@@ -323,7 +323,7 @@ int main(void)
     tcase_add_loop_test(tc, any_number_of_threads_and_plain_c_give_the_same_bytes, first, end);
     tcase_add_loop_test(tc, rows_may_run_from_bottom_to_top, first, end);
     tcase_add_loop_test(tc, a_smaller_output_is_the_middle_of_the_full_one, first, end);
-    tcase_add_test(tc, maps_to_nowhere_give_pixels_of_the_picture);
+    tcase_add_test(tc, maps_far_outside_give_pixels_of_the_picture);
     tcase_add_test(tc, a_config_without_format_or_size_is_refused);
     tcase_add_loop_test(tc, out_of_memory_leaves_nothing_behind, 0, 2);
     suite_add_tcase(suite, tc);

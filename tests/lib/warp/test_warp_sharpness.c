@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A slow pan must look right: sharpness does not pulse, and motion has no steps. */
+/* A slow pan must look smooth: sharpness does not pulse, and motion has no steps. */
 #include "warp/coords.h"
 #include "warp/warp_fixture.h"
 #include "warp/warp_tables.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What tests of the warp's sample types share: two functions that must give the same bytes for any positions. */
+/* What the tests of the sample types share: two functions that must give the same bytes for any positions. */
 #ifndef WARP_RUNS_H
 #define WARP_RUNS_H
 

@@ -126,7 +126,7 @@ L1L2StabResult l1l2_config_resolve(const L1L2StabConfig *in, L1L2StabConfig *out
         return result;
     out->struct_size = sizeof *out;
     if (!l1l2_image_format_info(out->format)) {
-        l1l2_log(&out->logger, L1L2STAB_LOG_ERROR, "format %d is not offered: choose an L1L2STAB_FORMAT_*",
+        l1l2_log(&out->logger, L1L2STAB_LOG_ERROR, "format %d is not supported: choose an L1L2STAB_FORMAT_*",
                  (int)out->format);
         return L1L2STAB_ERR_UNSUPPORTED;
     }
@@ -176,7 +176,7 @@ const char *l1l2stab_strerror(L1L2StabResult result)
     case L1L2STAB_EOS: return "end of stream: every frame has been pulled";
     case L1L2STAB_ERR_ARGUMENT: return "the caller passed a value that is out of range: the log says which";
     case L1L2STAB_ERR_STATE: return "the caller made a call out of order: reset() after finish() before pushing again";
-    case L1L2STAB_ERR_UNSUPPORTED: return "this is not offered: the log says what is";
+    case L1L2STAB_ERR_UNSUPPORTED: return "this is not supported: the log says what is";
     case L1L2STAB_ERR_NOMEM: return "out of memory: choose a shorter window or smaller frames";
     case L1L2STAB_ERR_BACKEND: return "the imaging or solver library failed: the log says how; please report it";
     }

@@ -10,9 +10,9 @@
  *
  * name       value     unit    effect, and what chose the value
  * ---------  --------  ------  -------------------------------------------------------------------------------------
- * jitter_ns  2e6       ns      A deviation from the nominal frame below it counts as none: containers round timestamps
+ * jitter_ns  2e6       ns      A smaller deviation from the nominal frame counts as none: containers round timestamps
  *                              to 1 ms, and live sources stamp frames when they come.
- * least_ns   1e6       ns      Shorter steps are no times: callers that have none count frames 0, 1, 2. It is a quarter
+ * least_ns   1e6       ns      Shorter steps are not times: callers without times count 0, 1, 2. It is a quarter
  *                              of a frame at 250 frames/s.
  * shortest   0.25      frames  Bounds of a step. They bound the coefficients of the differences (path/problem.h), and
  * longest    4         frames  what a wrong timestamp can do. Longer gaps: docs/path.md, "Variable frame rate".

@@ -38,7 +38,8 @@ gst_l1l2_stab_submit_input_buffer (GstBaseTransform * trans,
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
   GstFlowReturn ret;
 
-  /* A dropped input frame would be a hole in the camera path, so nobody can switch QoS on. */
+  /* A dropped input frame would be a hole in the camera path, so QoS is switched off even if an application has
+   * switched it on. */
   gst_base_transform_set_qos_enabled (trans, FALSE);
   /* The base class renegotiates if it has to, and leaves the frame in queued_buf. */
   ret = GST_BASE_TRANSFORM_CLASS (gst_l1l2_stab_parent_class)

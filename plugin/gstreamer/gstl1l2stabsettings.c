@@ -23,7 +23,8 @@ enum
   PROP_POST_MESSAGES,
 };
 
-/* A change takes effect with the next caps, or for a file with the next start: hence READY. */
+/* A change takes effect with the next caps, and for a file name when the element starts. So these are changed in
+ * READY. */
 #define SETTING_FLAGS \
   (G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY)
 

@@ -28,7 +28,7 @@ typedef struct
   guint64 n_in;                 /* number of frames that came in ... */
   guint64 n_out;                /* ... and of those among them that went out or were dropped */
   GQueue held;                  /* of HeldFrame: the frames that the library holds, oldest first */
-  GQueue events;                /* of WaitingEvent: the events behind held frames, oldest first */
+  GQueue events;                /* of WaitingEvent: the events after held frames, oldest first */
 } GstL1L2StabStream;
 
 void gst_l1l2_stab_stream_init (GstL1L2StabStream * stream,

@@ -3,9 +3,9 @@
  * What each tunable parameter does: it is halved and doubled, and the measured motion is compared with the truth of
  * synthetic clips, and with the motion at the defaults.
  *
- * For each value: how many of the clips have another motion or quality at all; the root mean square error of F_t as a
- * part of the default's, the geometric mean over the clips (0.001 px is added to each error); the worst single frame,
- * px; frames without a measured motion and paths started, and the mean quality, less the default's; and the clip whose
+ * For each value: how many of the clips have another motion or quality; the root mean square error of F_t as a part of
+ * the default's, the geometric mean over the clips (0.001 px is added to each error); the worst single frame, px;
+ * frames without a measured motion and paths started, and the mean quality, less the default's; and the clip whose
  * error changes most. Clips given as raw gray files have no truth: for them the error is the distance from the motion
  * at the defaults.
  *

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Compares the element with FFmpeg's vidstabdetect + vidstabtransform and deshake, with default settings, on the same
-# file and cores: CPU and wall time per frame less the time of decoding, in ms, medians. The programs take turns, so that
-# all run under the same load. The cost of tracking is the difference to a run that reads the motion from a file.
+# file and cores: CPU and wall time per frame less the time of decoding, in ms, medians. The programs take turns, so
+# that all run under the same load. The cost of tracking is the difference to a run that reads the motion from a file.
 # usage: compare-ffmpeg.sh BUILD [CLIP.mp4 [ROUNDS [CORES]]]
 # Without a clip, or with '': 1080p30 of the test scene. CORES: as taskset has them, by default 0,1. Needs GNU time.
 set -eu

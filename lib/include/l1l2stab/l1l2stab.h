@@ -257,7 +257,7 @@ typedef struct L1L2StabFrame {
     /* The frame's time in nanoseconds, or L1L2STAB_NO_PTS; pull() returns it with the same frame. Where the frames are
      * not evenly spaced, the path is smooth in time. A step that is within 2 ms of 1 / frame_rate, shorter than 1 ms,
      * or without two timestamps counts as one frame, and so does every step where frame_rate is 0. Any other counts by
-     * its length, but as 1/4 frame at least and as 4 frames at most. So numbers that are no times, such as 0, 1, 2,
+     * its length, but as 1/4 frame at least and as 4 frames at most. So numbers that are not times, such as 0, 1, 2,
      * have no effect. A step back counts as one frame; where timestamps keep falling (reverse playback), by its
      * length. */
     int64_t pts;

@@ -32,7 +32,7 @@ enum {
     L1L2_WARP_PHASE_BITS = 10,
     L1L2_WARP_PHASES = 1 << L1L2_WARP_PHASE_BITS,
     L1L2_WARP_RUN_SAMPLES = 256,      /* the longest run: its positions stay in the first-level cache */
-    L1L2_WARP_RUN_SLACK = 7,          /* entries behind a run that a generator may overwrite */
+    L1L2_WARP_RUN_SLACK = 7,          /* entries after a run that a generator may overwrite */
     L1L2_WARP_STEP_BITS = 27,         /* 16 steps of a scanline, of 4/3 sample at most, fit 32 bits without a sign */
     L1L2_WARP_SCANLINE_COLUMNS = 352  /* of the longest scanline: 255 steps of 4/3 sample, and 6 taps */
 };
@@ -114,7 +114,7 @@ bool l1l2_warp_affine_scanline(const L1L2WarpAffine *affine, int taps, int u, in
 bool l1l2_warp_mesh_scanline(const L1L2WarpMeshPlane *plane, const L1L2WarpCells *cells, int taps, int v,
                              L1L2WarpScanline *scanline);
 
-/* They write the positions of the same runs, and anything at all to the L1L2_WARP_RUN_SLACK entries behind them.
+/* They write the positions of the same runs, and undefined values to the L1L2_WARP_RUN_SLACK entries after them.
  * Positions do not depend on where a run begins. Far outside they saturate, some 500000 samples from the plane's
  * corner. */
 typedef struct L1L2WarpGenerators {

@@ -141,7 +141,7 @@ START_TEST(a_gap_of_twelve_frames_disturbs_a_pan_only_around_it)
     for (int t = 30; t < r->frames - 30; t++)
         if (fabs(speed_in_time(r, t) / 2.0 - 1.0) > 0.05)
             first = t < first ? t : first, last = t;
-    printf("12 frames missing in a pan of 2 px/frame: its speed is off by more than 5 %% from frame %d to %d behind "
+    printf("12 frames missing in a pan of 2 px/frame: its speed is off by more than 5 %% from frame %d to %d after "
            "the gap, which it crosses by %.1f of 24 px\n", first - 300, last - 300, speed_px(r, 300));
     ck_assert(first >= 300 - 45 && last <= 300 + 45);
     free(even);

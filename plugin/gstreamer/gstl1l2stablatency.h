@@ -13,7 +13,7 @@ typedef struct
 {
   GstElement *element;          /* its object lock guards the rest; not owned */
   GstClockTime latency;         /* `window` frame durations */
-  GstClockTime limit;           /* for which a frame may be held: half a frame duration less, to leave time for rendering */
+  GstClockTime limit;           /* for which a frame may be held: half a duration less, for rendering */
   gboolean has_upstream;        /* upstream has answered a latency query ... */
   gboolean is_live;             /* ... and this is its answer */
 } GstL1L2StabLatency;

@@ -5,8 +5,8 @@
     plugin, samples -> public header -> lib/src -> motion -> rolling_shutter -> fit, warp -> image -> common
                                             \\-> path ---------------------------------------> common
 
-Each folder of lib/src has one rule: the folders whose headers it may include. No rule points back. OpenCV, OSQP and
-GStreamer are each used in one place. A new folder has to be added here.
+Each folder of lib/src has one rule: the folders whose headers it may include. No rule points back. OpenCV, OSQP,
+GStreamer and FFmpeg are each used in one place. A new folder has to be added here.
 """
 import re
 import sys
@@ -29,6 +29,7 @@ MAY_INCLUDE = {
 
 # For each folder outside lib/src: the folders that its files may include headers from, in quotes.
 QUOTED = {
+    'plugin/ffmpeg': [],
     'plugin/gstreamer': ['plugin/gstreamer'],
     'samples': ['samples', 'tests/support'],
     'tests/bench': ['tests/bench', 'tests/support', SOURCE],
@@ -40,11 +41,16 @@ QUOTED = {
     SOURCE: [SOURCE],
 }
 
+# The files of this folder are compiled within FFmpeg's source tree. FFmpeg's headers are included in quotes there.
+FFMPEG = 'plugin/ffmpeg'
+FFMPEG_HEADER = r'((libav|libsw)[a-z]+/)?[a-z_]+\.h'
+
 # Headers from outside the tree, and the only files that may include them.
 FOREIGN = [
     (r'opencv', r'lib/src/motion/vision_opencv\.cpp|tests/(bench/bench_|clients/|lib/motion/)opencv_.*'),
     (r'(osqp|qdldl|amd)\b', r'lib/src/path/qp_osqp\.c'),
     (r'(gst|glib|gio|gobject|gmodule)\b', r'(plugin/gstreamer|tests/gstreamer|samples)/.*'),
+    (r'(libav|libsw)[a-z]+/', r'samples/stabilize-libav\.c'),
     (r'check\.h', r'tests/.*'),
     (r'.*intrin\.h', r'lib/src/.*'),
 ]
@@ -84,6 +90,8 @@ def fault(path, header, quoted, exists):
         return None
     if header == PUBLIC:
         return 'the public header is included with <>'
+    if place == FFMPEG and re.fullmatch(FFMPEG_HEADER, header):
+        return None
     if not any(exists(f'{folder}/{header}') for folder in QUOTED[place]):
         return 'is not a header of ' + (' or '.join(QUOTED[place]) or 'the system')
     return layer_fault(path.relative_to(SOURCE), header) if place == SOURCE else None
@@ -118,6 +126,9 @@ def self_test():
         ('lib/src/common/log.c', 'gst/gst.h', False), ('tests/lib/common/test_log.c', 'gst/gst.h', False),
         ('plugin/gstreamer/plugin.c', 'common/geom.h', True), ('samples/sample.c', 'common/geom.h', True),
         ('lib/src/common/log.c', 'check.h', False), ('tests/support/synth.c', 'common/geom.h', True),
+        ('plugin/ffmpeg/vf.c', 'common/geom.h', True), ('plugin/ffmpeg/vf.c', 'gst/gst.h', False),
+        ('plugin/gstreamer/plugin.c', 'libavutil/opt.h', False), ('samples/sample.c', 'libavcodec/avcodec.h', False),
+        ('plugin/gstreamer/plugin.c', 'libavutil/opt.h', True), ('lib/src/common/log.c', 'libavutil/log.h', False),
         ('elsewhere/a.c', 'stdio.h', False), ('plugin/a.c', 'stdio.h', False),
     ]
     right = [
@@ -126,6 +137,8 @@ def self_test():
         ('plugin/gstreamer/plugin.c', 'gst/gst.h', False), ('tests/lib/common/test_geom.c', 'common/geom.h', True),
         ('lib/src/path/path.c', 'math.h', False), ('lib/src/common/geom.c', PUBLIC, False),
         ('lib/src/warp/x86/avx2.h', 'warp/sample.h', True), ('lib/src/motion/motion.c', 'fit/ransac.h', True),
+        ('plugin/ffmpeg/vf.c', 'libavutil/opt.h', True), ('plugin/ffmpeg/vf.c', 'avfilter.h', True),
+        ('plugin/ffmpeg/vf.c', PUBLIC, False), ('samples/stabilize-libav.c', 'libavcodec/avcodec.h', False),
     ]
 
     def exists(name):

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Runs the sample programs from end to end: they turn a shaky clip with sound into a stabilized one.
-# usage: check_samples.sh STABILIZE_FILE RENDER_SHAKY MEASURE_SHAKE SMOOTH_PATH
+# usage: check_samples.sh STABILIZE_FILE RENDER_SHAKY MEASURE_SHAKE SMOOTH_PATH [STABILIZE_LIBAV]
 # check_samples_faults.sh has the tests of wrong arguments, interruptions and unusual files.
 set -eu
 export LC_ALL=C
@@ -10,6 +10,7 @@ stabilize_file=$(realpath "$1")
 render_shaky=$(realpath "$2")
 measure_shake=$(realpath "$3")
 smooth_path=$(realpath "$4")
+stabilize_libav=${5:+$(realpath "$5")}
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 cd "$dir"
@@ -68,3 +69,18 @@ close=$(distance lambda=2)
 [ "${free% *}" = 300 ] && [ "${close% *}" = 300 ] || fail "smooth-path gave $free and $close"
 awk -v a="${free#* }" -v b="${close#* }" 'BEGIN { exit !(b > 0 && b < a) }' || fail "lambda: $free, $close"
 ! "$smooth_path" motion.txt lambda=much >said 2>&1 || fail "accepted: lambda=much"
+
+# The sample on libavformat and libavcodec is built where they are installed.
+if [ -n "$stabilize_libav" ]; then
+  "$stabilize_libav" 'a clip.mp4' libav.mp4 2>said || fail "$(cat said)"
+  "$measure_shake" --motion=libav.txt libav.mp4 >said || fail "$(cat said)"
+  [ "$(grep -c '^[0-9]' libav.txt)" -eq 300 ] || fail "libav.mp4 does not have 300 frames"
+  "$measure_shake" 'a clip.mp4' libav.mp4 >measured
+  cat measured
+  ratio=$(sed -n 's/^ratio: //p' measured)
+  awk -v ratio="$ratio" 'BEGIN { exit !(ratio != "" && ratio < 0.15) }' || fail "libav: the shake did not fall to 15 %"
+  ! "$stabilize_libav" truth.txt libav.mp4 2>said || fail "accepted: a file without video"
+  grep -q '^stabilize-libav: ' said || fail "no reason: $(cat said)"
+else
+  echo 'skipped: stabilize-libav, without libavcodec-dev, libavformat-dev and libavutil-dev'
+fi

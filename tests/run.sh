@@ -4,6 +4,8 @@
 # usage: tests/run.sh [MESON_TEST_OPTION...]               all tests, or some: tests/run.sh --suite lib
 #        tests/run.sh --sanitize [MESON_TEST_OPTION...]    the library's and the element's tests under AddressSanitizer
 #                                                          and UndefinedBehaviorSanitizer, built in build-sanitize
+#        tests/run.sh --long [MESON_TEST_OPTION...]        only the long tests, which the others leave out: the filter
+#                                                          in an ffmpeg that they build, half an hour at first
 # The environment variable BUILD_DIR names another build directory. CC and CXX choose the compiler of a new one.
 set -euo pipefail
 
@@ -21,6 +23,9 @@ if [[ ${1:-} == --sanitize ]]; then
   [[ $# -gt 0 ]] || test_options+=(--suite lib --suite plugin)
   export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1}
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-halt_on_error=1:print_stacktrace=1}
+elif [[ ${1:-} == --long ]]; then
+  shift
+  test_options=(--suite long)
 fi
 build=${BUILD_DIR:-$build}
 log=$build/meson-logs/testlog.json

@@ -1,31 +1,46 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Compares the element with FFmpeg's vidstabdetect + vidstabtransform and deshake, with default settings, on the same
-# file and cores: CPU and wall time per frame less the time of decoding, in ms, medians. The programs take turns, so
-# that all run under the same load. The cost of tracking is the difference to a run that reads the motion from a file.
+# Compares the library with FFmpeg's vidstabdetect + vidstabtransform and deshake, with default settings, on the same
+# file and cores. The library runs as the filter of the same ffmpeg, and as the GStreamer element.
+# Time: CPU and wall time per frame less the time of decoding, in ms, medians. The programs take turns, so that all run
+# under the same load. The cost of tracking is the difference to a run that reads the motion from a file.
+# Steadiness: the shake of the result in pixels, by samples/measure-shake, and its ratio to the shake of the source.
+# It does not show borders or loss of sharpness.
 # usage: compare-ffmpeg.sh BUILD [CLIP.mp4 [ROUNDS [CORES]]]
-# Without a clip, or with '': 1080p30 of the test scene. CORES: as taskset has them, by default 0,1. Needs GNU time.
+# Without a clip, or with '': 1080p30 of the test scene. CORES: as taskset has them, by default 0,1. Needs GNU time. The
+# ffmpeg is a small one that tests/ffmpeg/build-ffmpeg.sh builds, which takes minutes at first. It needs libvidstab-dev.
 set -eu
 
-build=$1
+build=$(realpath "$1")
 rounds=${3:-5}
 cores=${4:-0,1}
 export GST_PLUGIN_PATH="$build/plugin/gstreamer"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+ffmpeg_folder=$("$(dirname "$0")/../ffmpeg/build-ffmpeg.sh" "$build" 5.1 vidstab)
+by_small() {
+  program=$ffmpeg_folder/bin/$1
+  shift
+  env LD_LIBRARY_PATH="$ffmpeg_folder/lib:$build/lib" "$program" "$@"
+}
+
 clip=${2:-}
 if [ -z "$clip" ]; then
   clip=$work/clip.mp4
   "$build/samples/render-shaky" "$work/small.mp4" > "$work/log" 2>&1
-  ffmpeg -v error -i "$work/small.mp4" -an -vf scale=1920:1080:flags=lanczos -frames:v 240 -c:v libx264 -crf 20 \
-    -preset veryfast "$clip"
+  gst-launch-1.0 -q filesrc location="$work/small.mp4" ! decodebin ! identity eos-after=241 ! \
+    videoscale method=lanczos ! video/x-raw,width=1920,height=1080 ! x264enc pass=qual quantizer=20 \
+    speed-preset=veryfast ! h264parse ! mp4mux ! filesink location="$clip"
 fi
-frames=$(ffprobe -v error -select_streams v -count_packets -show_entries stream=nb_read_packets -of csv=p=0 "$clip" |
-  tr -d ',')
+frames=$(by_small ffprobe -v error -select_streams v -count_packets -show_entries stream=nb_read_packets -of csv=p=0 \
+  "$clip" | tr -d ',')
 
 measured() { /usr/bin/time -f "$what %U %S %e" -a -o "$work/measured" taskset -c "$cores" "$@"; }
-by_ffmpeg() { measured ffmpeg -v error -nostdin -i "$clip" -an "$@" -f null -; }
+by_ffmpeg() {
+  measured env LD_LIBRARY_PATH="$ffmpeg_folder/lib:$build/lib" \
+    "$ffmpeg_folder/bin/ffmpeg" -v error -nostdin -i "$clip" -an "$@" -f null -
+}
 by_gst() { measured gst-launch-1.0 -q filesrc location="$clip" ! parsebin ! avdec_h264 "$@" ! fakesink; }
 
 run() {
@@ -34,6 +49,8 @@ run() {
     vidstabdetect) by_ffmpeg -vf "vidstabdetect=result=$work/motion.trf" ;;
     vidstabtransform) by_ffmpeg -vf "vidstabtransform=input=$work/motion.trf" ;;
     deshake) by_ffmpeg -vf deshake ;;
+    filter) by_ffmpeg -vf l1l2stab ;;
+    filter-bilinear) by_ffmpeg -vf l1l2stab=interpolation=bilinear ;;
     gst-decode) by_gst ;;
     bicubic) by_gst ! l1l2stab motion-out="$work/motion.txt" ;;
     given) by_gst ! l1l2stab motion-in="$work/motion.txt" ;;
@@ -41,7 +58,7 @@ run() {
   esac
 }
 
-all='ffmpeg-decode vidstabdetect vidstabtransform deshake gst-decode bicubic given bilinear'
+all='ffmpeg-decode vidstabdetect vidstabtransform deshake filter filter-bilinear gst-decode bicubic given bilinear'
 for round in $(seq "$rounds"); do
   for what in $all; do
     run > "$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
@@ -80,14 +97,31 @@ above() { echo "$(median "$1" "$3") $(median "$2" "$3")" | awk '{ print $1 - $2 
     line("  vidstabdetect", "vidstabdetect")
     line("  vidstabtransform (bilinear)", "vidstabtransform")
     line("  deshake", "deshake")
-    line("  l1l2stab (bicubic)", "bicubic")
-    line("  l1l2stab interpolation=bilinear", "bilinear")
+    line("  l1l2stab (bicubic)", "filter")
+    line("  l1l2stab interpolation=bilinear", "filter-bilinear")
+    line("  the element (bicubic)", "bicubic")
+    line("  the element, interpolation=bilinear", "bilinear")
     for (c = 1; c <= 2; c++) ms[c, "tracking"] = ms[c, "bicubic"] - ms[c, "given"]
-    line("  l1l2stab, tracking alone", "tracking")
+    line("  the element, tracking alone", "tracking")
     print "times as fast:"
-    ratio("  bicubic over vidstabdetect + transform", vidstab[1] / ms[1, "bicubic"], vidstab[2] / ms[2, "bicubic"])
-    ratio("  bilinear over vidstabdetect + transform", vidstab[1] / ms[1, "bilinear"], vidstab[2] / ms[2, "bilinear"])
+    two = "vidstabdetect + vidstabtransform"
+    ratio("  l1l2stab over " two, vidstab[1] / ms[1, "filter"], vidstab[2] / ms[2, "filter"])
+    ratio("  bilinear over " two, vidstab[1] / ms[1, "filter-bilinear"], vidstab[2] / ms[2, "filter-bilinear"])
+    ratio("  the element over " two, vidstab[1] / ms[1, "bicubic"], vidstab[2] / ms[2, "bicubic"])
+    ratio("  the element, bilinear, over " two, vidstab[1] / ms[1, "bilinear"], vidstab[2] / ms[2, "bilinear"])
     ratio("  tracking over vidstabdetect", ms[1, "vidstabdetect"] / ms[1, "tracking"],
           ms[2, "vidstabdetect"] / ms[2, "tracking"])
-    ratio("  bicubic over deshake", ms[1, "deshake"] / ms[1, "bicubic"], ms[2, "deshake"] / ms[2, "bicubic"])
+    ratio("  l1l2stab over deshake", ms[1, "deshake"] / ms[1, "filter"], ms[2, "deshake"] / ms[2, "filter"])
   }'
+
+# shake NAME GRAPH: a line of the table of quality
+shake() {
+  by_small ffmpeg -v error -nostdin -y -i "$clip" -an -vf "$2" -c:v ffv1 "$work/result.mkv"
+  "$build/samples/measure-shake" "$clip" "$work/result.mkv" 2>> "$work/log" |
+    awk -v name="$1" '/ px$/ { px = $(NF - 1) } $1 == "ratio:" { printf "  %-40s %8.3f %8.3f\n", name, px, $2 }'
+}
+echo 'shake:                                           px  of source'
+shake source null
+shake 'vidstabdetect + vidstabtransform' "vidstabtransform=input=$work/motion.trf"
+shake deshake deshake
+shake l1l2stab l1l2stab

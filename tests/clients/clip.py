@@ -51,9 +51,9 @@ class Frame(NamedTuple):
     edge: bytes     # some rows of the upper edge: shows how much the picture moves
 
 
-def begin(*programs, elements=()):
+def begin(*programs, elements=(), seconds=WATCHDOG_SECONDS):
     """To be called first: starts the watchdog and GStreamer, and skips the test if something it needs is missing."""
-    faulthandler.dump_traceback_later(WATCHDOG_SECONDS, exit=True)
+    faulthandler.dump_traceback_later(seconds, exit=True)
     Gst.init(None)
     missing = [p for p in programs if not shutil.which(p)]
     missing += [e for e in ('x264enc', 'mp4mux', *elements) if not Gst.ElementFactory.find(e)]

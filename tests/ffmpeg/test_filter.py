@@ -17,7 +17,7 @@ FRAMES = 60
 WINDOW = 12
 PICTURE = WIDTH * HEIGHT * 3 // 2  # bytes
 
-clip.begin()
+clip.begin(seconds=600)
 folder = clip.folder()
 film = folder / 'film.yuv'
 film.write_bytes(b''.join(clip.pictures(FRAMES)))

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: MIT
 """From the same decoded frames, the filter and the GStreamer element make the same frames, to the bit."""
 import hashlib
+import os
 import subprocess
 import unittest
+from pathlib import Path
 
 import small_ffmpeg
 import clip
@@ -11,6 +13,8 @@ from clip import Gst, HEIGHT, WIDTH
 
 FRAMES = 40
 WINDOW = 12
+CLIP_FRAMES = 100
+CLIPS = Path(os.environ.get('CLIPS_DIR', 'no folder'))
 
 # FFmpeg's formats, and those of GStreamer that the library gets as the same. Later versions of FFmpeg have more.
 FORMATS = {
@@ -41,7 +45,7 @@ def colored(picture):
     return luma + blue + bytes(255 - c for c in blue)
 
 
-clip.begin(elements=['rawvideoparse', 'capssetter'])
+clip.begin(elements=['rawvideoparse', 'capssetter'], seconds=1800)
 folder = clip.folder()
 film = folder / 'film.yuv'
 film.write_bytes(b''.join(map(colored, clip.pictures(FRAMES))))
@@ -50,7 +54,7 @@ film.write_bytes(b''.join(map(colored, clip.pictures(FRAMES))))
 def by_element(pipeline, frames):
     """The MD5 of each frame that a pipeline makes."""
     out = folder / 'element.raw'
-    subprocess.run(f'gst-launch-1.0 -q {pipeline} ! filesink location={out}', shell=True, check=True, timeout=60)
+    subprocess.run(f'gst-launch-1.0 -q {pipeline} ! filesink location={out}', shell=True, check=True, timeout=120)
     data = out.read_bytes()
     size, rest = divmod(len(data), frames)
     assert size and not rest
@@ -78,11 +82,25 @@ def converted(pixel_format):
     return path
 
 
-def parsed(path, gst_format, more=''):
+def parsed(path, gst_format, more='', width=WIDTH, height=HEIGHT):
     """A piece of pipeline that reads raw frames. The caps have no chroma site unless `more` has it."""
-    return (f'filesrc location={path} ! rawvideoparse use-sink-caps=false width={WIDTH} height={HEIGHT} '
+    return (f'filesrc location={path} ! rawvideoparse use-sink-caps=false width={width} height={height} '
             f'framerate=30/1 format={gst_format.lower().replace("_", "-")} ! capssetter replace=true caps=video/x-raw,'
-            f'format={gst_format},width={WIDTH},height={HEIGHT},framerate=30/1{more}')
+            f'format={gst_format},width={width},height={height},framerate=30/1{more}')
+
+
+def decoded(path):
+    """The first frames of a clip as raw frames; their number; their size, which is made a multiple of 16."""
+    out = folder / 'decoded.yuv'
+    probe = Gst.parse_launch(f'filesrc location={path} ! decodebin ! fakesink name=sink')
+    probe.set_state(Gst.State.PAUSED)
+    probe.get_state(10 * Gst.SECOND)
+    caps = probe.get_by_name('sink').get_static_pad('sink').get_current_caps().get_structure(0)
+    probe.set_state(Gst.State.NULL)
+    width, height = caps.get_int('width')[1] & -16, caps.get_int('height')[1] & -16
+    clip.play(f'filesrc location={path} ! decodebin ! identity eos-after={CLIP_FRAMES + 1} ! videoconvert ! videoscale '
+              f'! video/x-raw,format=I420,width={width},height={height} ! filesink location={out}')
+    return out, out.stat().st_size // (width * height * 3 // 2), width, height
 
 
 class Identical(unittest.TestCase):
@@ -164,6 +182,15 @@ class Identical(unittest.TestCase):
         self.assert_identical(
             f'filesrc location={path} ! qtdemux ! h264parse ! avdec_h264 ! l1l2stab lambda=0.5',
             '-i', path, '-vf', 'l1l2stab=lambda=0.5', '-fps_mode', 'passthrough')
+
+    @unittest.skipUnless(CLIPS.is_dir(), 'the folder of real clips is absent')
+    def test_real_clips_are_stabilized_to_the_same_bits(self):
+        for path in sorted(p for p in CLIPS.iterdir() if p.suffix != '.tsv'):
+            with self.subTest(clip=path.name):
+                raw, frames, width, height = decoded(path)
+                self.assertGreater(frames, CLIP_FRAMES // 2)
+                self.assert_identical(f'{parsed(raw, "I420", "", width, height)} ! l1l2stab window=60',
+                                      *small_ffmpeg.raw(raw, width, height), '-vf', 'l1l2stab=window=60', frames=frames)
 
 
 if __name__ == '__main__':

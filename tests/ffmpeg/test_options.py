@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: MIT
 """The options of the filter and the properties of the GStreamer element are the same table, and all are documented."""
 import re
+import shutil
+import subprocess
 import unittest
 from pathlib import Path
 
@@ -14,6 +16,8 @@ from gi.repository import GObject
 # its bus, and have its stream time.
 ELEMENT_ALONE = {'threads', 'post_messages', 'stats', 'motion_in', 'motion_out'}
 COMMANDS = {'lambda', 'crop_ratio', 'bypass'}
+PLUGIN = Path(__file__).parents[2] / 'plugin/ffmpeg'
+CHANGED = ['configure', 'doc/filters.texi', 'libavfilter/Makefile', 'libavfilter/allfilters.c']
 TYPES = {'<double>': float, '<int>': int, '<boolean>': bool}
 
 clip.begin()
@@ -87,7 +91,7 @@ class Options(unittest.TestCase):
         self.assertEqual(self.commands, COMMANDS)
 
     def test_every_option_and_every_value_is_documented(self):
-        text = (Path(__file__).parents[2] / 'plugin/ffmpeg/filters.texi').read_text(encoding='utf-8')
+        text = (PLUGIN / 'filters.texi').read_text(encoding='utf-8')
         documented = set(re.findall(r'@item (\w+)|@samp\{(\w+)\}', text))
         documented = {a or b for a, b in documented}
         for name, (_, _, _, values) in self.filter.items():
@@ -96,6 +100,43 @@ class Options(unittest.TestCase):
 
     def test_the_build_is_under_the_lgpl(self):
         self.assertIn('GNU Lesser General Public', small_ffmpeg.run('-L')[0].decode())
+
+
+class Script(unittest.TestCase):
+    """add-to-ffmpeg.sh, in a copy of the files of FFmpeg that it changes."""
+    def setUp(self):
+        self.tree = clip.folder()
+        for name in CHANGED:
+            (self.tree / name).parent.mkdir(exist_ok=True)
+            shutil.copy(small_ffmpeg.FOLDER.parents[1] / 'tree' / name, self.tree / name)
+
+    def add(self):
+        return subprocess.run([PLUGIN / 'add-to-ffmpeg.sh', self.tree], capture_output=True, text=True, check=False)
+
+    def contents(self):
+        return {name: (self.tree / name).read_text(encoding='utf-8') for name in CHANGED}
+
+    def test_run_again_it_changes_nothing(self):
+        before = self.contents()
+        self.assertEqual(self.add().returncode, 0)
+        self.assertEqual(self.contents(), before)
+        copied = self.tree / 'libavfilter/vf_l1l2stab.c'
+        self.assertEqual(copied.read_bytes(), (PLUGIN / 'vf_l1l2stab.c').read_bytes())
+
+    def test_older_documentation_is_replaced(self):
+        text = self.contents()['doc/filters.texi']
+        (self.tree / 'doc/filters.texi').write_text(text.replace('Stabilize video in one pass.', 'An older text.'))
+        self.assertEqual(self.add().returncode, 0)
+        self.assertEqual(self.contents()['doc/filters.texi'], text)
+
+    def test_another_tree_is_refused_with_the_reason(self):
+        configure = self.tree / 'configure'
+        configure.write_text(re.sub('.*(libkvazaar|l1l2stab).*\n', '', configure.read_text()))
+        refused = self.add()
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertIn('configure has no place for the filter', refused.stderr)
+        configure.unlink()
+        self.assertIn('it has no writable configure', self.add().stderr)
 
 
 if __name__ == '__main__':

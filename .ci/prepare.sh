@@ -10,9 +10,9 @@ build=$(realpath -m "${1:-$top/build}")
 options=("${@:2}")
 overlay=$top/subprojects/packagefiles/osqp
 
-# Free disk space that is needed, in megabytes. A minimal Debian lacks about 540 packages, and apt keeps their archives.
-packages_need=1700
-archives_need=450
+# Free disk space that is needed, in megabytes. A minimal Debian lacks about 580 packages, and apt keeps their archives.
+packages_need=1900
+archives_need=500
 build_need=100
 
 say() { echo "prepare: $*" >&2; }

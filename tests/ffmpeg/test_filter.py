@@ -163,8 +163,10 @@ class Changes(unittest.TestCase):
         window = f'l1l2stab=window={WINDOW}'
         frames = filtered(f'{self.GRAPH}{window}')
         self.assertEqual(times(frames), [*range(FRAMES)])
-        first = filtered(f'trim=end_frame=25,{window}')
-        second = filtered(f'{self.GRAPH}trim=start_frame=25,{window}')
+        large = [f.bytes for f in frames].count(PICTURE)
+        self.assertIn(large, (24, 25))  # the scaler counts from 1 in FFmpeg 7.1
+        first = filtered(f'trim=end_frame={large},{window}')
+        second = filtered(f'{self.GRAPH}trim=start_frame={large},{window}')
         self.assertEqual([f.bytes for f in frames], [f.bytes for f in first + second])
         self.assertEqual(md5s(frames), md5s(first + second))
 
@@ -181,7 +183,7 @@ class Changes(unittest.TestCase):
         # This is so with every filter that holds frames, such as FFmpeg's own reverse.
         path = folder / 'changing.h264'
         path.write_bytes(b''.join(encoded(w, h) for w, h in ((320, 240), (240, 180))))
-        words = ['-i', path, '-fps_mode', 'passthrough', '-autoscale', '0']
+        words = ['-i', path, '-fps_mode', 'passthrough', '-noautoscale']
 
         def count(graph, *before):
             return len(frames_of(*before, *words, '-vf', graph))

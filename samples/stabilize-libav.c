@@ -18,6 +18,7 @@ typedef struct App {
     AVCodecContext *decoder, *encoder;
     AVPacket *demuxed, *encoded;
     L1L2Stab *stab;
+    int64_t last_pts;
 } App;
 
 static int open_decoder(App *a, const char *name)
@@ -44,7 +45,8 @@ static void log_line(void *cookie, L1L2StabLogLevel level, const char *message)
 static L1L2StabFormat format_of(enum AVPixelFormat format)
 {
     switch (format) {
-    case AV_PIX_FMT_YUV420P: return L1L2STAB_FORMAT_I420;
+    case AV_PIX_FMT_YUV420P:
+    case AV_PIX_FMT_YUVJ420P: return L1L2STAB_FORMAT_I420;
     case AV_PIX_FMT_YUV422P: return L1L2STAB_FORMAT_Y42B;
     case AV_PIX_FMT_YUV420P10LE: return L1L2STAB_FORMAT_I420_10LE;
     default: return L1L2STAB_FORMAT_UNKNOWN; /* l1l2stab_create() refuses it, and says so */
@@ -147,11 +149,13 @@ static void release_frame(void *opaque)
 /* Takes the frame: the library holds it until it has been rendered. */
 static int push(App *a, AVFrame *frame)
 {
-    L1L2StabFrame in = {.pts = L1L2STAB_NO_PTS, .opaque = frame, .release = release_frame};
+    L1L2StabFrame in = {.opaque = frame, .release = release_frame};
     const AVCodecContext *as = a->encoder;
     frame->pts = frame->best_effort_timestamp;
-    if (frame->pts != AV_NOPTS_VALUE)
-        in.pts = av_rescale_q(frame->pts, a->video->time_base, (AVRational){1, 1000000000});
+    if (frame->pts == AV_NOPTS_VALUE || frame->pts <= a->last_pts)
+        frame->pts = a->last_pts + 1; /* B-frames in AVI, which has no presentation times */
+    a->last_pts = frame->pts;
+    in.pts = av_rescale_q(frame->pts, a->video->time_base, (AVRational){1, 1000000000});
     set_planes(&in, frame);
     if (frame->width == as->width && frame->height == as->height && frame->format == as->pix_fmt &&
         l1l2stab_push(a->stab, &in) == L1L2STAB_OK)
@@ -198,7 +202,7 @@ int main(int argc, char **argv)
         return 2;
     }
     av_log_set_level(AV_LOG_WARNING);
-    App a = {.demuxed = av_packet_alloc(), .encoded = av_packet_alloc()};
+    App a = {.demuxed = av_packet_alloc(), .encoded = av_packet_alloc(), .last_pts = -1};
     int r = a.demuxed && a.encoded ? 0 : AVERROR(ENOMEM);
     if (r < 0 || (r = open_decoder(&a, argv[1])) < 0 || (r = open_stabilizer(&a)) < 0 ||
         (r = open_encoder(&a, argv[2])) < 0 || (r = run(&a)) < 0)

@@ -7,8 +7,9 @@
 # Steadiness: the shake of the result in pixels, by samples/measure-shake, and its ratio to the shake of the source.
 # It does not show borders or loss of sharpness.
 # usage: compare-ffmpeg.sh BUILD [CLIP.mp4 [ROUNDS [CORES]]]
-# Without a clip, or with '': 1080p30 of the test scene. CORES: as taskset has them, by default 0,1. Needs GNU time. The
-# ffmpeg is a small one that tests/ffmpeg/build-ffmpeg.sh builds, which takes minutes at first. It needs libvidstab-dev.
+# Without a clip, or with '': 1080p30 of the test scene. ROUNDS: 0 measures the quality alone. CORES: as taskset has
+# them, by default 0,1. Needs GNU time. The ffmpeg is a small one that tests/ffmpeg/build-ffmpeg.sh builds, which takes
+# minutes at first. It needs libvidstab-dev.
 set -eu
 
 build=$(realpath "$1")
@@ -74,6 +75,7 @@ median() {
 
 above() { echo "$(median "$1" "$3") $(median "$2" "$3")" | awk '{ print $1 - $2 }'; }
 
+time_table() {
 {
   for column in 1 2; do
     for what in $all; do
@@ -113,6 +115,7 @@ above() { echo "$(median "$1" "$3") $(median "$2" "$3")" | awk '{ print $1 - $2 
           ms[2, "vidstabdetect"] / ms[2, "tracking"])
     ratio("  l1l2stab over deshake", ms[1, "deshake"] / ms[1, "filter"], ms[2, "deshake"] / ms[2, "filter"])
   }'
+}
 
 # shake NAME GRAPH: a line of the table of quality
 shake() {
@@ -120,8 +123,11 @@ shake() {
   "$build/samples/measure-shake" "$clip" "$work/result.mkv" 2>> "$work/log" |
     awk -v name="$1" '/ px$/ { px = $(NF - 1) } $1 == "ratio:" { printf "  %-40s %8.3f %8.3f\n", name, px, $2 }'
 }
+
+[ "$rounds" -eq 0 ] || time_table
 echo 'shake:                                           px  of source'
 shake source null
+by_small ffmpeg -v error -nostdin -i "$clip" -an -vf "vidstabdetect=result=$work/motion.trf" -f null -
 shake 'vidstabdetect + vidstabtransform' "vidstabtransform=input=$work/motion.trf"
 shake deshake deshake
 shake l1l2stab l1l2stab

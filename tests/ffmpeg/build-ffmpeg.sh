@@ -69,7 +69,7 @@ apt_source() {
   echo "deb-src [signed-by=$keyring] $mirror $suite main" >"$folder/sources.list"
   local apt=(apt-get -q -y -o Dir::Etc::SourceList="$folder/sources.list" -o Dir::Etc::SourceParts=-
     -o Dir::State::Lists="$folder/lists" -o Dir::Cache="$folder" -o Dir::Cache::Archives="$folder/archives"
-    -o APT::Sandbox::User=root -o Acquire::Retries=2)
+    -o APT::Sandbox::User=root -o APT::Update::Error-Mode=any -o Acquire::Retries=2)
   "${apt[@]}" update && (cd "$1" && "${apt[@]}" source ffmpeg)
 }
 
@@ -80,7 +80,8 @@ fetch() {
   say "fetching the source of FFmpeg $version"
   rm -rf "$fetched"
   mkdir -p "$fetched"
-  apt_source "$fetched" >"$log" 2>&1 || skip "the source of FFmpeg $version cannot be had: $(tail -n 1 "$log")"
+  apt_source "$fetched" >"$log" 2>&1 ||
+    skip "the source of FFmpeg $version cannot be had: $(grep -m 1 '^[EW]: ' "$log" || echo "see $log")"
   mv "$fetched"/ffmpeg-"$version"*/ "$tree"
   rm -rf "$fetched" "$home/apt"
 }

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Stabilizes a video file and reports the shake before and after. First builds the tree and installs missing packages.
+# Stabilizes a video file with l1l2stab and reports the shake before and after. First builds the tree and installs
+# missing packages.
 # usage: samples/stabilize.sh [OPTION...] [IN [OUT]]
 #   IN       a video; default: a shaky clip that it renders
-#   OUT      ends with .mp4, .m4v, .mov or .mkv; default: IN's name with -stabilized.mp4, in the current directory
-#   OPTION   a property of the element, such as --lambda 1 or --crop-ratio=0.85; --help lists them
+#   OUT      default: IN's name with -stabilized.mp4, in the current directory; its suffix chooses the format
+#   OPTION   an option of l1l2stab, as --name=value or --name: --lambda=1, --quiet; --help lists them
 # The environment variable BUILD_DIR names the build directory; default: build, at the top of the tree
 set -euo pipefail
 
@@ -17,16 +18,9 @@ die() {
 }
 
 options=()
-while [[ ${1:-} == -* ]]; do
-  case $1 in
-    --) shift && break ;;
-    --help | *=*) options+=("$1") ;;
-    *)
-      [[ $# -gt 1 ]] || die "$1: its value is missing"
-      options+=("$1=$2")
-      shift
-      ;;
-  esac
+while [[ ${1:-} == -?* ]]; do
+  [[ $1 != -- ]] || { shift && break; }
+  options+=("$1")
   shift
 done
 [[ $# -le 2 ]] || die "too many arguments. Usage: samples/stabilize.sh [--name=value...] [IN [OUT]]"
@@ -42,7 +36,7 @@ export GST_PLUGIN_PATH=$build/plugin/gstreamer${GST_PLUGIN_PATH:+:$GST_PLUGIN_PA
 export GST_REGISTRY=$build/plugin/gstreamer/registry.bin
 
 if [[ " ${options[*]} " == *" --help "* ]]; then
-  exec "$build/samples/stabilize-file" --help
+  exec "$build/samples/l1l2stab/l1l2stab" --help
 fi
 
 if [[ $# -eq 0 ]]; then
@@ -56,14 +50,14 @@ else
   name=${in##*/}
   out=${2:-${name%.*}-stabilized.mp4}
 fi
-[[ $in != -* ]] || in=./$in
+[[ $in != -* ]] || in=./$in # for measure-shake
 [[ $out != -* ]] || out=./$out
 picture=${out%.*}-before-after.png
 
 # A file name for a line of the report: control characters, such as a newline, become question marks.
 printable() { echo "${1//[[:cntrl:]]/?}"; }
 
-"$build/samples/stabilize-file" "${options[@]}" "$in" "$out"
+"$build/samples/l1l2stab/l1l2stab" "${options[@]}" -o "$out" -- "$in"
 
 echo "measuring" >&2
 result=$("$build/samples/measure-shake" --picture="$picture" "$in" "$out")

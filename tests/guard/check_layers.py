@@ -32,6 +32,7 @@ QUOTED = {
     'plugin/ffmpeg': [],
     'plugin/gstreamer': ['plugin/gstreamer'],
     'samples': ['samples', 'tests/support'],
+    'samples/l1l2stab': ['samples/l1l2stab'],
     'tests/bench': ['tests/bench', 'tests/support', SOURCE],
     'tests/clients': ['tests/clients'],
     'tests/gstreamer': ['tests/gstreamer', 'tests/support'],
@@ -50,7 +51,7 @@ FOREIGN = [
     (r'opencv', r'lib/src/motion/vision_opencv\.cpp|tests/(bench/bench_|clients/|lib/motion/)opencv_.*'),
     (r'(osqp|qdldl|amd)\b', r'lib/src/path/qp_osqp\.c'),
     (r'(gst|glib|gio|gobject|gmodule)\b', r'(plugin/gstreamer|tests/gstreamer|samples)/.*'),
-    (r'(libav|libsw)[a-z]+/', r'samples/stabilize-libav\.c'),
+    (r'(libav|libsw)[a-z]+/', r'samples/(l1l2stab/.*|stabilize-libav\.c)'),
     (r'check\.h', r'tests/.*'),
     (r'.*intrin\.h', r'lib/src/.*'),
 ]

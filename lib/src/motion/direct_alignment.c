@@ -77,6 +77,10 @@ struct L1L2DirectAlignment {
     float *warped, *residual, *weight; /* of each sample; weight 0 outside the other picture, or the cell's */
     double clip, mean;        /* of the pictures */
     double gain, offset;      /* that are expected */
+    L1L2Mask mask;
+    bool layered;             /* samples that move with a layer over the scene do not count */
+    float *layer_residual;    /* what its motion leaves of each sample */
+    float *open;              /* of each sample of the template's level: 0 where it is masked */
     int histogram[BINS];
     float trust[CELLS];       /* how much the samples of each cell count */
     float pattern[L1L2_ALIGN_CELLS_Y][L1L2_FLOAT_PYRAMID_SIDE + LANES]; /* the same for each sample of a row */
@@ -93,9 +97,10 @@ L1L2DirectAlignment *l1l2_motion_align_new(int width, int height, double frame_w
     /* Of any level: MAX_SAMPLES, rounded up in each row and column. */
     const size_t samples = MAX_SAMPLES + (size_t)(LANES + 2) * L1L2_FLOAT_PYRAMID_SIDE;
     d->phase = l1l2_motion_phase_new();
-    d->memory = l1l2_mem_new(6 * samples, sizeof *d->memory);
+    d->memory = l1l2_mem_new(7 * samples, sizeof *d->memory);
     d->detail = l1l2_mem_new(samples, sizeof *d->detail);
-    if (!d->phase || !d->memory || !d->detail) {
+    d->open = l1l2_mem_new((size_t)L1L2_FLOAT_PYRAMID_SIDE * L1L2_FLOAT_PYRAMID_SIDE, sizeof *d->open);
+    if (!d->phase || !d->memory || !d->detail || !d->open) {
         l1l2_motion_align_free(d);
         return NULL;
     }
@@ -106,6 +111,7 @@ L1L2DirectAlignment *l1l2_motion_align_new(int width, int height, double frame_w
     d->warped = d->memory + 3 * samples;
     d->residual = d->memory + 4 * samples;
     d->weight = d->memory + 5 * samples;
+    d->layer_residual = d->memory + 6 * samples;
     return d;
 }
 
@@ -116,6 +122,7 @@ void l1l2_motion_align_free(L1L2DirectAlignment *d)
     l1l2_motion_phase_free(d->phase);
     l1l2_mem_free(d->memory);
     l1l2_mem_free(d->detail);
+    l1l2_mem_free(d->open);
     l1l2_mem_free(d);
 }
 
@@ -134,6 +141,17 @@ static void set_trust(L1L2DirectAlignment *d, const float *trust)
             d->pattern[y][c] = trust[y * L1L2_ALIGN_CELLS_X + c * L1L2_ALIGN_CELLS_X / t->columns];
 }
 
+/* The mask at the size of a level. */
+static void set_mask(L1L2DirectAlignment *d, const L1L2FloatLevel *level)
+{
+    const L1L2Mask *mask = &d->mask;
+    for (int y = 0; mask->blocked && y < level->height; y++) {
+        const uint8_t *row = mask->blocked + (ptrdiff_t)(y * mask->height / level->height) * mask->width;
+        for (int x = 0; x < level->width; x++)
+            d->open[(ptrdiff_t)y * level->width + x] = row[x * mask->width / level->width] ? 0.0f : 1.0f;
+    }
+}
+
 static void set_template(L1L2DirectAlignment *d, const L1L2FloatPyramid *now, int which)
 {
     Template *t = &d->template;
@@ -147,6 +165,7 @@ static void set_template(L1L2DirectAlignment *d, const L1L2FloatPyramid *now, in
     t->unit_x = 2.0 * d->half_w * level->step / now->width;
     t->unit_y = 2.0 * d->half_h * level->step / now->height;
     t->half_w = d->half_w, t->half_h = d->half_h;
+    set_mask(d, level);
     const float half = 0.5f, half_y = (float)(0.5 * t->unit_x / t->unit_y);
     for (int r = 0; r < t->rows; r++) {
         const float *row = level->sample + (ptrdiff_t)(t->margin + r * t->spacing) * level->width + t->margin;
@@ -179,6 +198,15 @@ static double sample_y(const Template *t, double r)
 static bool lies_inside(const L1L2FloatLevel *level, float u, float v)
 {
     return u >= 1.0f && v >= 1.0f && u < (float)(level->width - 2) && v < (float)(level->height - 2);
+}
+
+/* Samples that the layer's motion explains clearly better do not count. */
+static void exclude_layer(float *residual, const float *by_layer, float *weight, int count)
+{
+    const float clearly = 0.5f, least = 4.0f; /* ratio; grey levels */
+    for (int c = 0; c < count; c++)
+        if (fabsf(residual[c]) > least && fabsf(by_layer[c]) < clearly * fabsf(residual[c]))
+            residual[c] = weight[c] = 0.0f;
 }
 
 /* The other picture at F of each sample, and what is left between the two. Returns how many samples lie in it. */
@@ -214,11 +242,18 @@ static int compare(L1L2DirectAlignment *d, const L1L2FloatLevel *other, const Gu
         if (end > first)
             memcpy(weight + first, d->pattern[r * L1L2_ALIGN_CELLS_Y / t->rows] + first,
                    (size_t)(end - first) * sizeof *weight);
+        for (int c = first; d->mask.blocked && c < end; c++) {
+            const float u = u0 + (float)c * du + 0.5f, v = v0 + (float)c * dv + 0.5f;
+            weight[c] *= d->open[(ptrdiff_t)(t->margin + r * t->spacing) * width + t->margin + c * t->spacing] *
+                         d->open[(ptrdiff_t)v * width + (ptrdiff_t)u];
+        }
         for (int c = end; c < t->pitch; c++)
             warped[c] = weight[c] = 0.0f;
         inside += end - first;
         for (int c = 0; c < t->pitch; c++)
             residual[c] = weight[c] > 0.0f ? gain * warped[c] + constant - grey[c] : 0.0f;
+        if (d->layered)
+            exclude_layer(residual, d->layer_residual + r * t->pitch, weight, t->pitch);
     }
     return inside;
 }
@@ -805,6 +840,20 @@ static void judge_starts(L1L2DirectAlignment *d, const L1L2FloatLevel *other, co
     }
 }
 
+/* The winner is refined by what does not move with the layer. From then on, that does not count. */
+static void refine_beside(L1L2DirectAlignment *d, const L1L2FloatLevel *other, const L1L2Mat *layer, Guess *winner)
+{
+    const Template *t = &d->template;
+    const Guess by_layer = {.F = *layer, .gain = winner->gain, .offset = winner->offset};
+    compare(d, other, &by_layer);
+    memcpy(d->layer_residual, d->residual, (size_t)t->rows * (size_t)t->pitch * sizeof *d->residual);
+    d->layered = true;
+    for (int round = 0; round < 3; round++) {
+        judge(d, other, winner);
+        refine(d, other, max_steps[0], winner);
+    }
+}
+
 void l1l2_motion_align(L1L2DirectAlignment *d, const L1L2FloatPyramid *now, const L1L2FloatPyramid *other,
                        const L1L2AlignmentGuide *guide, L1L2Alignment *out)
 {
@@ -814,6 +863,8 @@ void l1l2_motion_align(L1L2DirectAlignment *d, const L1L2FloatPyramid *now, cons
         even[i] = 1.0f;
     const int coarsest = now->levels > 2 ? 2 : now->levels - 1;
     set_brightness(d, now->level + coarsest, other->level + coarsest);
+    d->mask = guide->mask;
+    d->layered = false;
     set_template(d, now, coarsest);
     set_trust(d, even);
     int n = refine_coarsest(d, now, other, coarsest, guide, guess, &out->blind);
@@ -823,6 +874,8 @@ void l1l2_motion_align(L1L2DirectAlignment *d, const L1L2FloatPyramid *now, cons
         n = refine_level(d, other, level, guess, n);
     }
     prefer_expected(d, guess, n);
+    if (guide->layer && guess->residual < (double)FLT_MAX)
+        refine_beside(d, other->level, guide->layer, guess);
     double agreement = 0.0;
     if (guess->residual < (double)FLT_MAX)
         agreement = split(d, other->level, guide->split, guess, &n);
@@ -830,6 +883,57 @@ void l1l2_motion_align(L1L2DirectAlignment *d, const L1L2FloatPyramid *now, cons
     gather_evidence(d, other->level, guess, n, &out->evidence);
     judge_starts(d, other->level, guide, guess, &out->evidence);
     out->evidence.agreement = agreement;
+}
+
+/* The better of F refined and of the expected motion refined. */
+static Guess refine_near(L1L2DirectAlignment *d, const L1L2FloatLevel *other, const Guess *F, const L1L2Mat *expected)
+{
+    const int steps = 4;
+    Guess near = *F, other_guess = *F;
+    refine(d, other, steps, &near);
+    if (distance(d, expected, &F->F) < same_guess)
+        return near;
+    other_guess.F = *expected;
+    judge(d, other, &other_guess);
+    refine(d, other, steps, &other_guess);
+    return other_guess.residual < near.residual ? other_guess : near;
+}
+
+void l1l2_motion_align_check(L1L2DirectAlignment *d, const L1L2FloatPyramid *now, const L1L2FloatPyramid *other,
+                             const L1L2Mat *F, const L1L2Mat *expected, L1L2Mask mask, L1L2AlignmentCheck *out)
+{
+    const double clearly = 0.85, same = 0.15;
+    Cell cell[CELLS], better_cell[CELLS];
+    CellShift shift[CELLS];
+    float even[CELLS];
+    for (int i = 0; i < CELLS; i++)
+        even[i] = 1.0f;
+    set_brightness(d, now->level, other->level);
+    d->mask = mask;
+    d->layered = false;
+    set_template(d, now, 0);
+    set_trust(d, even);
+    Guess measured = {.F = *F, .gain = d->gain, .offset = d->offset};
+    judge(d, other->level, &measured);
+    const Guess better = refine_near(d, other->level, &measured, expected);
+    *out = (L1L2AlignmentCheck){.better = better.F};
+    if (distance(d, &better.F, F) < same)
+        return;
+    survey(d, other->level, &measured, cell);
+    survey(d, other->level, &better, better_cell);
+    find_shifts(d, better_cell, scatter(d), shift);
+    int with_detail = 0, support = 0, against = 0;
+    for (int i = 0; i < CELLS; i++)
+        if (shift[i].valid && cell[i].n > 0.0) {
+            const double one = cell[i].difference / cell[i].n, two = better_cell[i].difference / better_cell[i].n;
+            with_detail++;
+            support += one < clearly * two;
+            against += two < clearly * one;
+        }
+    if (with_detail > 0) {
+        out->support = (double)support / with_detail;
+        out->against = (double)against / with_detail;
+    }
 }
 
 /*

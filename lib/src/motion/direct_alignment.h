@@ -17,6 +17,7 @@
 
 #include "common/geom.h"
 #include "image/float_pyramid.h"
+#include "motion/vision.h"
 
 /* First guesses that a caller may give, and cells of the picture that are judged one by one. */
 enum {
@@ -60,6 +61,9 @@ typedef struct L1L2AlignmentGuide {
      * guesses that fit equally well, as where texture repeats, the one that comes from the first of these wins. */
     L1L2Mat start[L1L2_ALIGN_MAX_STARTS]; /* the first is what is expected, usually the motion of the frame before */
     int starts;
+    const L1L2Mat *layer; /* the motion of something that lies over the scene, such as text: what moves with it does not
+                           * count; NULL: there is none */
+    L1L2Mask mask;      /* places of either picture that do not count: static overlays */
     const float *trust; /* how much each cell of frame `now` counts, row by row, [0, 1]; NULL: all the same */
     /* Where the cells part into two motions, follow the one of the more trusted cells and name the other one the rival;
      * else the winner may lie between two that are close to each other. For callers whose trust remembers which part
@@ -83,6 +87,18 @@ void l1l2_motion_align_free(L1L2DirectAlignment *d);
 /* The motion F from frame `now` to frame `other`, which is usually the one before it. Allocates nothing. */
 void l1l2_motion_align(L1L2DirectAlignment *d, const L1L2FloatPyramid *now, const L1L2FloatPyramid *other,
                        const L1L2AlignmentGuide *guide, L1L2Alignment *out);
+
+/* What whole pictures say of a motion that was measured otherwise. */
+typedef struct L1L2AlignmentCheck {
+    L1L2Mat better;          /* the motion that fits best of those found from it and from the expected one */
+    double support, against; /* parts of the cells with detail: where the motion, and where the better one, fits clearly
+                              * better than the other of the two */
+} L1L2AlignmentCheck;
+
+/* Compares F with what a few steps of refinement make of it and of `expected`, at level 0 of small pictures: a twentieth
+ * of the time that an alignment takes. */
+void l1l2_motion_align_check(L1L2DirectAlignment *d, const L1L2FloatPyramid *now, const L1L2FloatPyramid *other,
+                             const L1L2Mat *F, const L1L2Mat *expected, L1L2Mask mask, L1L2AlignmentCheck *out);
 
 /* True if the evidence is that of a right motion. A caller that has another measurement may ask for more. */
 bool l1l2_motion_align_accepts(const L1L2AlignmentEvidence *e);

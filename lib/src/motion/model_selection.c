@@ -18,6 +18,7 @@ void l1l2_motion_model_reset(L1L2ModelSelection *s)
     s->acceptable_frames = s->lost = 0;
     s->last = l1l2_mat_identity();
     s->agreement = 1.0;
+    s->rivalry = 0.0;
     memset(&s->still, 0, sizeof s->still);
 }
 
@@ -167,16 +168,18 @@ static double find_rival(const L1L2ModelSelection *s, const L1L2TrackSet *tracks
 }
 
 /* The part of the weight that agrees, less what a rival has. It is found with and without the tracks' history, and the
- * lower value counts, because history would confirm a mistake. ambiguous: even with history the motion is as likely a
+ * lower value counts, because history would confirm a mistake. A rival that was seen a while ago still counts for a part:
+ * two motions look like one while they are close to each other. ambiguous: even with history the motion is as likely a
  * subject's as the background's. */
-static double find_quality(const L1L2ModelSelection *s, const L1L2TrackWeights *w, const L1L2TrackSet *tracks,
+static double find_quality(L1L2ModelSelection *s, const L1L2TrackWeights *w, const L1L2TrackSet *tracks,
                            const Candidate *c, bool *ambiguous)
 {
     const L1L2MotionParameters *p = s->parameters;
     const int count = tracks->count;
     double without_history[MAX];
     bool rival[MAX] = {false};
-    double least = 1.0, distance = 0.0;
+    s->rivalry *= p->rival_memory;
+    double least = 1.0, share = 1.0, distance = 0.0;
     const double inlying = weight_of(tracks->consensus_weights, c->inlier, count);
     const double all = weight_of(tracks->consensus_weights, NULL, count);
     if (all - inlying >= p->rival_min_share * all)
@@ -187,10 +190,14 @@ static double find_quality(const L1L2ModelSelection *s, const L1L2TrackWeights *
         const double *weights = history ? tracks->consensus_weights : without_history;
         const double agreed = weight_of(weights, c->inlier, count);
         const double opposed = distance * weight_of(weights, rival, count);
-        least = fmin(least, agreed / weight_of(weights, NULL, count) * fmax(0.0, 1.0 - opposed / agreed));
+        const double part = agreed / weight_of(weights, NULL, count), unopposed = fmax(0.0, 1.0 - opposed / agreed);
+        share = fmin(share, part);
+        least = fmin(least, part * unopposed);
+        s->rivalry = fmax(s->rivalry, 1.0 - unopposed);
         if (history)
             *ambiguous = least < p->min_quality;
     }
+    least = fmin(least, share * (1.0 - s->rivalry));
     const double coverage = l1l2_fit_coverage(w->half_w, w->half_h, tracks->pairs, c->inlier, count);
     return least * fmin(1.0, coverage / p->full_coverage);
 }
@@ -348,6 +355,7 @@ L1L2SelectedModel l1l2_motion_model_adopt(L1L2ModelSelection *s, const L1L2Mat *
     s->current = L1L2STAB_MOTION_MODEL_SIMILARITY;
     s->acceptable_frames = s->lost = 0;
     s->last = *F;
+    s->agreement = fmin(s->agreement, quality);
     return (L1L2SelectedModel){
         .source = L1L2STAB_MOTION_SOURCE_SIMILARITY, .F = *F, .inliers = inliers, .quality = quality};
 }

@@ -33,6 +33,7 @@ typedef struct L1L2ModelSelection {
         double sum[6];           /* of F less the identity, decaying */
         double variance;         /* of the corners under that sum, expected from noise */
     } still;
+    double rivalry;              /* [0, 1], decaying: of the agreeing weight, what another motion had lately */
     double agreement;            /* lowest quality since corners were selected: outliers are dropped after each frame */
 } L1L2ModelSelection;
 

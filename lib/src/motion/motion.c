@@ -17,7 +17,7 @@
 #include "rolling_shutter/camera_gate.h"
 #include "rolling_shutter/fit.h"
 
-enum { MAX_POINTS = L1L2_RANSAC_MAX_PAIRS };
+enum { MAX_POINTS = L1L2_RANSAC_MAX_PAIRS, OVERLAY_LEVEL = 1 };
 
 /* The least distance of points in tiny pictures: corners are found by windows of 3x3 pixels. */
 static const double min_distance_px = 3.0;
@@ -52,6 +52,8 @@ struct L1L2Motion {
     L1L2ShotCut cut;
     L1L2ShotDissolve dissolve;
     L1L2WholePicture *whole;  /* NULL: pictures too small */
+    int since_contradiction;
+    L1L2Mat tracks_F;         /* what the tracks of the frame before yielded */
     L1L2ShutterGate gate;     /* which of the residuals follow the camera's motion */
 };
 
@@ -67,7 +69,7 @@ static void configure(L1L2Motion *m)
     m->half_h = 0.5 * m->cfg.height / m->diagonal_px;
     m->shape = (L1L2ShutterModel){m->cfg.rolling_shutter, m->half_w, m->half_h, NULL};
     m->weights = (L1L2TrackWeights){.parameters = p, .half_w = m->half_w, .half_h = m->half_h};
-    m->overlay = (L1L2StaticOverlay){.parameters = p, .half_w = m->half_w, .half_h = m->half_h, .pixel = pixel};
+    m->overlay = (L1L2StaticOverlay){.parameters = p, .half_w = m->half_w, .half_h = m->half_h};
     m->dissolve.parameters = p;
     /* A similarity measures the translation of the whole picture best: where the camera rolls, a translation alone
      * would fit one part of the picture in one frame and another part in the next. The result is reduced in the end. */
@@ -77,6 +79,13 @@ static void configure(L1L2Motion *m)
                                         .threshold = p->inlier_distance * pixel};
     const double grid_px = sqrt((double)m->width * m->height / p->max_points);
     m->distance_px = fmin(fmax(p->point_grid * grid_px, min_distance_px), p->point_distance);
+}
+
+/* The current or the previous picture at the sizes that whole_picture.h wants. */
+static void take_pictures(const L1L2Motion *m, bool previous, L1L2GrayPicture picture[L1L2_WHOLE_PICTURE_SIZES])
+{
+    picture[L1L2_WHOLE_PICTURE_FULL] = l1l2_vision_picture(m->vision, previous, 0);
+    picture[L1L2_WHOLE_PICTURE_SMALL] = l1l2_vision_picture(m->vision, previous, 2);
 }
 
 L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
@@ -103,8 +112,14 @@ L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
     }
     l1l2_vision_size(m->vision, &m->width, &m->height);
     configure(m);
-    if (!l1l2_motion_whole_picture_create(&m->whole, m->width, m->height, m->pixel_aspect * cfg->width,
-                                          cfg->height)) {
+    L1L2GrayPicture size[L1L2_WHOLE_PICTURE_SIZES];
+    take_pictures(m, false, size);
+    if (!l1l2_motion_whole_picture_create(&m->whole, size, m->pixel_aspect * cfg->width, cfg->height)) {
+        l1l2_motion_free(m);
+        return L1L2STAB_ERR_NOMEM;
+    }
+    const L1L2GrayPicture overlay = l1l2_vision_picture(m->vision, false, OVERLAY_LEVEL);
+    if (!l1l2_motion_overlay_init(&m->overlay, overlay.width, overlay.height)) {
         l1l2_motion_free(m);
         return L1L2STAB_ERR_NOMEM;
     }
@@ -119,6 +134,7 @@ void l1l2_motion_free(L1L2Motion *m)
         return;
     l1l2_vision_free(m->vision);
     l1l2_motion_whole_picture_free(m->whole);
+    l1l2_motion_overlay_clear(&m->overlay);
     l1l2_mem_free(m);
 }
 
@@ -127,6 +143,7 @@ void l1l2_motion_reset(L1L2Motion *m)
     l1l2_vision_reset(m->vision);
     l1l2_motion_whole_picture_reset(m->whole);
     m->has_previous = false;
+    m->since_contradiction = 1000;
     m->rng = l1l2_rng_seeded(m->cfg.seed);
     l1l2_motion_overlay_reset(&m->overlay);
     memset(&m->gate, 0, sizeof m->gate);
@@ -161,12 +178,12 @@ static L1L2StabResult select_corners(L1L2Motion *m)
     const L1L2MotionParameters *p = m->cfg.parameters;
     if (m->since_selection++ < p->reselect_frames && m->points >= p->min_points_share * p->max_points)
         return L1L2STAB_OK;
-    L1L2Mask mask;
     int found;
-    l1l2_motion_overlay_mask(&m->overlay, &mask);
+    const L1L2Mask mask = l1l2_motion_overlay_mask(&m->overlay);
     const L1L2StabResult result =
         l1l2_vision_corners(m->vision, m->point, m->points, &mask, m->distance_px, m->point + m->points,
                             (int)p->max_points - m->points, &found);
+    l1l2_motion_overlay_age(&m->overlay);
     memset(m->age + m->points, 0, (size_t)found * sizeof *m->age);
     m->points += found;
     m->since_selection = 1;
@@ -219,7 +236,9 @@ static L1L2TrackSet weigh_tracks(L1L2Motion *m)
 static void learn(L1L2Motion *m, const L1L2Mat *F)
 {
     l1l2_motion_weights_learn(&m->weights, m->pair, m->core, m->points);
-    l1l2_motion_overlay_learn(&m->overlay, m->pair, m->inlier, m->points, F);
+    const L1L2GrayPicture now = l1l2_vision_picture(m->vision, false, OVERLAY_LEVEL);
+    const L1L2GrayPicture previous = l1l2_vision_picture(m->vision, true, OVERLAY_LEVEL);
+    l1l2_motion_overlay_learn(&m->overlay, &now, &previous, F);
     int kept = 0;
     for (int i = 0; i < m->points; i++) {
         m->age[i] = m->core[i] ? m->age[i] + 1 : 0;
@@ -327,20 +346,69 @@ static void cell_trust(const L1L2Motion *m, float trust[L1L2_ALIGN_CELLS])
     }
 }
 
-/* Measures the motion of a frame whose tracks did not yield it from whole pictures, if both have detail. Of two motions
- * with about equal weight the one of the tracks is tried as a first guess. */
-static void align_pictures(L1L2Motion *m, const L1L2TrackSet *tracks, L1L2SelectedModel *selected)
+/* How far whole pictures have to be asked about the motion of the tracks. */
+typedef enum Doubt {
+    SURE,         /* not at all */
+    IN_DOUBT,     /* the tracks yield no motion, or one with which many of them disagree */
+    CONTRADICTED, /* most parts of the picture move otherwise: the tracks may be on something burnt in */
+} Doubt;
+
+/* True if F is the motion of something burnt in: none at all, or the same as in the frame before. A camera in a hand
+ * hardly ever moves like that. */
+static bool repeats(const L1L2Motion *m, const L1L2Mat *F)
 {
+    const L1L2Mat identity = l1l2_mat_identity();
+    const double same = m->cfg.parameters->uniform_motion * m->selection.threshold;
+    return l1l2_mat_corner_distance(F, &m->tracks_F, m->half_w, m->half_h) < same ||
+           l1l2_mat_corner_distance(F, &identity, m->half_w, m->half_h) < same;
+}
+
+static Doubt find_doubt(L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2SelectedModel *selected,
+                        const L1L2Mat *expected)
+{
+    const L1L2MotionParameters *p = m->cfg.parameters;
+    L1L2AlignmentCheck check;
+    if (!m->had_detail || !l1l2_image_thumbnail_has_detail(&m->thumbnail))
+        return SURE;
+    if (selected->source == L1L2STAB_MOTION_SOURCE_NONE)
+        return IN_DOUBT;
+    if (selected->quality < p->align_below_quality && selected->inliers <= p->align_max_inlier_share * tracks->count)
+        return IN_DOUBT;
+    const bool repeated = repeats(m, &selected->F);
+    if (m->since_contradiction <= 60 && repeated)
+        return CONTRADICTED;
+    if (!m->overlay.any && m->since_contradiction > 60 && !repeated)
+        return SURE;
+    l1l2_motion_whole_picture_check(m->whole, &selected->F, expected, l1l2_motion_overlay_mask(&m->overlay), &check);
+    return check.against >= p->align_min_against && check.support <= p->align_max_support ? CONTRADICTED : SURE;
+}
+
+/* Measures the motion of a frame from whole pictures, if the tracks leave it in doubt. It replaces the motion of the
+ * tracks where it fits the pictures clearly better. */
+static void align_pictures(L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2Mat *expected,
+                           L1L2SelectedModel *selected)
+{
+    const L1L2MotionParameters *p = m->cfg.parameters;
     float trust[L1L2_ALIGN_CELLS];
     L1L2Alignment a;
-    if (!m->had_detail || !l1l2_image_thumbnail_has_detail(&m->thumbnail))
+    const Doubt doubt = find_doubt(m, tracks, selected, expected);
+    m->since_contradiction = doubt == CONTRADICTED ? 0 : m->since_contradiction + 1;
+    if (doubt == SURE)
         return;
+    const bool measured = selected->source != L1L2STAB_MOTION_SOURCE_NONE;
+    L1L2AlignmentGuide guide = {.start = {*expected}, .starts = 1, .trust = trust, .split = true,
+                                .mask = l1l2_motion_overlay_mask(&m->overlay)};
+    if (measured || selected->ambiguous)
+        guide.start[guide.starts++] = selected->F;
+    if (doubt == CONTRADICTED)
+        guide.layer = &selected->F;
     cell_trust(m, trust);
-    const L1L2Mat *guess = selected->ambiguous ? &selected->F : NULL;
-    const bool accepted = l1l2_motion_whole_picture_align(m->whole, &m->selection.last, guess, trust, &a);
-    if (accepted && fabs(log(a.evidence.gain)) <= m->cfg.parameters->align_max_gain)
+    if (!l1l2_motion_whole_picture_align(m->whole, &guide, &a) || fabs(log(a.evidence.gain)) > p->align_max_gain)
+        return;
+    const double better = doubt == CONTRADICTED ? p->contradicted_better : p->align_better;
+    if (!measured || a.evidence.residual < better * a.evidence.start_residual[1])
         *selected = adopt_alignment(m, tracks, &a.F, fmin(a.evidence.correlation * a.evidence.agreement,
-                                                          m->cfg.parameters->align_max_quality));
+                                                          p->align_max_quality));
 }
 
 /* ---- One frame ---- */
@@ -368,6 +436,7 @@ static bool measure(L1L2Motion *m, L1L2MotionResult *out)
 {
     const L1L2TrackSet tracks = weigh_tracks(m);
     const bool reselected = m->since_selection == 1;
+    const L1L2Mat expected = m->selection.last;
     L1L2SelectedModel selected =
         l1l2_motion_model_select(&m->selection, &m->weights, &tracks, reselected, m->inlier, m->core);
     measure_residual(m, &tracks, &selected, out);
@@ -375,8 +444,9 @@ static bool measure(L1L2Motion *m, L1L2MotionResult *out)
         cut_to(m, "a cut");
         return false;
     }
-    if (selected.source == L1L2STAB_MOTION_SOURCE_NONE)
-        align_pictures(m, &tracks, &selected);
+    const L1L2Mat tracks_F = selected.F;
+    align_pictures(m, &tracks, &expected, &selected);
+    m->tracks_F = tracks_F;
     m->had_detail = l1l2_image_thumbnail_has_detail(&m->thumbnail);
     const bool measured = selected.source != L1L2STAB_MOTION_SOURCE_NONE;
     if (measured)
@@ -407,9 +477,9 @@ static const L1L2MotionResult path_start = {
 static L1L2StabResult advance_picture(L1L2Motion *m, const uint8_t *data, ptrdiff_t stride)
 {
     const L1L2StabResult result = l1l2_vision_advance(m->vision, data, stride);
-    L1L2GrayPicture previous, current;
-    previous.data = l1l2_vision_picture(m->vision, true, &previous.stride);
-    current.data = l1l2_vision_picture(m->vision, false, &current.stride);
+    L1L2GrayPicture previous[L1L2_WHOLE_PICTURE_SIZES], current[L1L2_WHOLE_PICTURE_SIZES];
+    take_pictures(m, true, previous);
+    take_pictures(m, false, current);
     l1l2_motion_whole_picture_advance(m->whole, previous, current);
     return result == L1L2STAB_OK ? l1l2_vision_thumbnail(m->vision, &m->thumbnail) : result;
 }

@@ -86,6 +86,8 @@
         "sweep: half x1.00, double x1.00; most: logo and timecode, dark") \
     ROW(rival_distance, 4, "threshold", "nearer motions are other depths of one scene", \
         "sweep: motions same, mean quality -0.012 for half, +0.007 for double") \
+    ROW(rival_memory, 0.965, "a frame", "decay of what another motion had", \
+        "test_motion_movers: a subject on 60 % is as fast as the camera now and then") \
     ROW(min_quality, 0.12, "[0, 1]", "below it neither of two motions is followed", \
         "test_model_selection: two motions of equal weight have less; sweep: same") \
     ROW(full_coverage, 0.3, "of the cells", "with inliers in them the frame counts as covered", \
@@ -93,6 +95,19 @@
     /* Whole pictures: motion.c, whole_picture.c */ \
     ROW(align_max_quality, 0.4, "[0, 1]", "of a motion from whole pictures", \
         "test_motion_movers: a subject on 60 % must not be followed with confidence") \
+    ROW(align_below_quality, 0.4, "[0, 1]", "of the tracks' motion: below it whole pictures are asked, too", \
+        "TODO") \
+    ROW(align_max_inlier_share, 0.7, "of the tracks", "that agree: with more, whole pictures are not asked", \
+        "TODO") \
+    ROW(align_better, 0.97, "of the difference", "that the tracks' motion leaves: whole pictures have to beat it", \
+        "TODO") \
+    ROW(contradicted_better, 0.85, "of the difference", "ditto, where the tracks may be on an overlay", \
+        "TODO") \
+    ROW(uniform_motion, 0.2, "threshold", "x", "TODO") \
+    ROW(align_min_against, 0.25, "of the cells", "that fit another motion clearly better: the tracks are contradicted", \
+        "TODO") \
+    ROW(align_max_support, 0.2, "of the cells", "that fit the tracks' motion clearly better: else they are not", \
+        "TODO") \
     ROW(align_max_gain, 0.4, "log ratio", "of contrast between two whole pictures: else one is covered", \
         "test_never_worse: lens covered 2 s") \
     /* Noise: model_selection.c */ \
@@ -119,10 +134,12 @@
         "sweep: half x0.98, double x1.10; most: mover on 60 %") \
     ROW(learning_rate, 0.15, "a frame", "of the cells' agreement", \
         "sweep: half x1.12, double x0.99; most: mover on 60 %") \
-    ROW(overlay_min_camera, 2, "px", "camera motion from which that is evidence of an overlay", \
+    ROW(overlay_min_camera, 1, "px", "camera motion from which that is evidence of an overlay", \
         "sweep: half x1.00, double x1.00; most: logo and timecode, dark") \
-    ROW(overlay_hits, 5, "tracks", "standing still in a cell make an overlay of it", \
-        "sweep: half x1.00, double x1.00; most: logo and timecode, dark") \
+    ROW(overlay_hits, 5, "frames", "in which a pixel stood still make an overlay of it", \
+        "TODO") \
+    ROW(overlay_noise, 4, "gray levels", "what stands still changes by less, what moves by more than twice of it", \
+        "TODO") \
     /* Dissolves: shot_dissolve.c */ \
     ROW(dissolve_same_shot, 0.5, "correlation", "pictures that are more alike are of one shot", \
         "sweep: half x1.00, double same; most: dissolve of 10") \

@@ -1,36 +1,50 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Static overlays: logos, burnt-in text and clocks, which stand still while the camera moves. The places where such
- * tracks were seen are remembered for some time, and no corner is selected there.
+ * Static overlays: logos, burnt-in text and clocks, dirt on the lens, which stand still while the camera moves.
+ *
+ * Each pixel of a small picture collects evidence. Where the current picture looks like the previous one at the same
+ * place, and unlike the previous one at the place from which the camera's motion would have brought it, something
+ * stands still; where it is the other way round, the scene is seen. Flat places tell nothing. The places found are
+ * excluded from corners, tracks and whole-picture alignment.
  */
 #ifndef L1L2_MOTION_STATIC_OVERLAY_H
 #define L1L2_MOTION_STATIC_OVERLAY_H
 
 #include <stdbool.h>
 
-#include "fit/point_pairs.h"
+#include "common/geom.h"
 #include "motion/parameters.h"
 #include "motion/vision.h"
 
 typedef struct L1L2StaticOverlay {
     const L1L2MotionParameters *parameters;
-    double half_w, half_h;         /* of the frame, in the pairs' unit */
-    double pixel;                  /* of the downscaled picture, in the pairs' unit */
-    double score[L1L2_MASK_CELLS]; /* tracks that stood still in the cell, less those that did not */
+    double half_w, half_h; /* of the frame, diagonals */
+    int width, height;     /* of the small picture, pixels; 0: too small, there are no overlays */
+    uint8_t *score;        /* evidence of each pixel, row by row */
+    uint8_t *covered;      /* 1: an overlay, or near one */
+    bool any;              /* some pixel is covered */
+    bool stale;            /* `covered` is older than `score` */
 } L1L2StaticOverlay;
+
+/* width, height: of the small pictures that l1l2_motion_overlay_learn() will be given, pixels; 0: it will be given none.
+ * False: out of memory. */
+bool l1l2_motion_overlay_init(L1L2StaticOverlay *o, int width, int height);
+void l1l2_motion_overlay_clear(L1L2StaticOverlay *o);
 
 void l1l2_motion_overlay_reset(L1L2StaticOverlay *o);
 
-/* Learns from a frame: F is the camera's motion, the pairs are all tracks, inlier marks those that follow it. */
-void l1l2_motion_overlay_learn(L1L2StaticOverlay *o, const L1L2Pair *pairs, const bool *inlier, int count,
+/* Learns from two small pictures and the camera's motion F from the current one to the previous one. */
+void l1l2_motion_overlay_learn(L1L2StaticOverlay *o, const L1L2GrayPicture *now, const L1L2GrayPicture *previous,
                                const L1L2Mat *F);
 
 /* True if p lies on an overlay. */
-bool l1l2_motion_overlay_covers(const L1L2StaticOverlay *o, L1L2Point p);
+bool l1l2_motion_overlay_covers(L1L2StaticOverlay *o, L1L2Point p);
 
-/* Marks the cells of all overlays, and lets them age by one selection of corners. Nothing is tracked on a masked
- * overlay, so it is forgotten after 15 selections (about 150 frames), and found again
- * within a few frames if it is still there. */
-void l1l2_motion_overlay_mask(L1L2StaticOverlay *o, L1L2Mask *mask);
+/* The covered pixels of the small picture. blocked is NULL if there are none. Valid until o is changed. */
+L1L2Mask l1l2_motion_overlay_mask(L1L2StaticOverlay *o);
+
+/* Lets the evidence age, by one selection of corners. Where nothing is seen that tells, an overlay is forgotten after
+ * 20 selections, about 200 frames. */
+void l1l2_motion_overlay_age(L1L2StaticOverlay *o);
 
 #endif

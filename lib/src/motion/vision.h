@@ -36,12 +36,16 @@ typedef struct L1L2Pixel {
     float x, y;
 } L1L2Pixel;
 
-/* Cells of the picture, row by row, in which no corner is selected. */
-#define L1L2_MASK_W 32
-#define L1L2_MASK_H 18
-#define L1L2_MASK_CELLS (L1L2_MASK_W * L1L2_MASK_H)
+typedef struct L1L2GrayPicture {
+    const uint8_t *data;
+    ptrdiff_t stride; /* bytes */
+    int width, height;
+} L1L2GrayPicture;
+
+/* Cells of the picture, row by row: 1 where no corner is selected. */
 typedef struct L1L2Mask {
-    bool blocked[L1L2_MASK_CELLS];
+    const uint8_t *blocked; /* NULL: none is */
+    int width, height;      /* cells */
 } L1L2Mask;
 
 /* On error *out is NULL. cfg->parameters and cfg->log must outlive the object. Pyramids are allocated here. */
@@ -58,9 +62,10 @@ void l1l2_vision_size(const L1L2Vision *v, int *width, int *height);
  * current one, and its pyramid is built. */
 L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t stride);
 
-/* A downscaled picture: data and stride of its rows, bytes. previous: the picture before the current one, in the
- * current one's brightness where that changed much. Valid until the next l1l2_vision_advance(). */
-const uint8_t *l1l2_vision_picture(const L1L2Vision *v, bool previous, ptrdiff_t *stride);
+/* A level of a downscaled picture's pyramid: 0 is the picture, each further one has half its size, rounded up; of
+ * levels that a small picture lacks, the last one. previous: of the picture before the current one, in the current
+ * one's brightness where that changed much. Valid until the next l1l2_vision_advance(). */
+L1L2GrayPicture l1l2_vision_picture(const L1L2Vision *v, bool previous, int level);
 
 /* The current picture as a thumbnail, downscaled by area averaging. */
 L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail);

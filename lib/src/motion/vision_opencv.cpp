@@ -201,12 +201,14 @@ cv::Rect active_area(const L1L2MotionParameters *parameters, const cv::Mat &pict
 
 void block(cv::Mat &area, const L1L2Mask *mask)
 {
-    for (int cell = 0; mask && cell < L1L2_MASK_CELLS; cell++) {
-        const int x = cell % L1L2_MASK_W, y = cell / L1L2_MASK_W;
-        const int left = area.cols * x / L1L2_MASK_W, right = area.cols * (x + 1) / L1L2_MASK_W;
-        const int top = area.rows * y / L1L2_MASK_H, bottom = area.rows * (y + 1) / L1L2_MASK_H;
-        if (mask->blocked[cell])
-            area(cv::Rect(left, top, right - left, bottom - top)).setTo(0);
+    if (!mask || !mask->blocked)
+        return;
+    for (int y = 0; y < area.rows; y++) {
+        const uint8_t *blocked = mask->blocked + ptrdiff_t(y * mask->height / area.rows) * mask->width;
+        uchar *row = area.ptr<uchar>(y);
+        for (int x = 0; x < area.cols; x++)
+            if (blocked[x * mask->width / area.cols])
+                row[x] = 0;
     }
 }
 
@@ -367,11 +369,11 @@ L1L2StabResult l1l2_vision_advance(L1L2Vision *v, const uint8_t *data, ptrdiff_t
     });
 }
 
-const uint8_t *l1l2_vision_picture(const L1L2Vision *v, bool previous, ptrdiff_t *stride)
+L1L2GrayPicture l1l2_vision_picture(const L1L2Vision *v, bool previous, int level)
 {
     const L1L2Pyramid *p = previous ? v->previous_pyramid.get() : v->pyramid.get();
-    *stride = p->level[0].stride;
-    return p->grey[0];
+    const L1L2LkLevel &l = p->level[std::min(level, p->levels - 1)];
+    return {l.grey, l.stride, l.width, l.height};
 }
 
 L1L2StabResult l1l2_vision_thumbnail(L1L2Vision *v, L1L2Thumbnail *thumbnail)

@@ -3,29 +3,41 @@
 
 #include "common/mem.h"
 
-struct L1L2WholePicture {
+/* An aligner with the two pictures that it compares, at one size. */
+typedef struct PicturePair {
     L1L2DirectAlignment *aligner;
-    L1L2GrayPicture gray[2];                         /* previous, current */
-    L1L2FloatPyramid *previous, *current;            /* built when they are needed */
-    bool has_previous, has_current;                   /* these are built */
+    L1L2GrayPicture gray[2];               /* previous, current */
+    L1L2FloatPyramid *previous, *current;  /* built when they are needed */
+    bool has_previous, has_current;        /* these are built */
+} PicturePair;
+
+struct L1L2WholePicture {
+    PicturePair size[L1L2_WHOLE_PICTURE_SIZES];
 };
 
-bool l1l2_motion_whole_picture_create(L1L2WholePicture **out, int width, int height, double frame_width,
-                                      double frame_height)
+static bool create_pair(PicturePair *pair, const L1L2GrayPicture *size, double frame_width, double frame_height)
+{
+    pair->aligner = l1l2_motion_align_new(size->width, size->height, frame_width, frame_height);
+    pair->previous = l1l2_image_float_pyramid_new(size->width, size->height);
+    pair->current = l1l2_image_float_pyramid_new(size->width, size->height);
+    return pair->aligner && pair->previous && pair->current;
+}
+
+bool l1l2_motion_whole_picture_create(L1L2WholePicture **out, const L1L2GrayPicture size[L1L2_WHOLE_PICTURE_SIZES],
+                                      double frame_width, double frame_height)
 {
     *out = NULL;
-    if (width < L1L2_FLOAT_PYRAMID_MIN_SIDE || height < L1L2_FLOAT_PYRAMID_MIN_SIDE)
+    const L1L2GrayPicture *smallest = &size[L1L2_WHOLE_PICTURE_SMALL];
+    if (smallest->width < L1L2_FLOAT_PYRAMID_MIN_SIDE || smallest->height < L1L2_FLOAT_PYRAMID_MIN_SIDE)
         return true;
     L1L2WholePicture *w = l1l2_mem_new(1, sizeof *w);
     if (!w)
         return false;
-    w->aligner = l1l2_motion_align_new(width, height, frame_width, frame_height);
-    w->previous = l1l2_image_float_pyramid_new(width, height);
-    w->current = l1l2_image_float_pyramid_new(width, height);
-    if (!w->aligner || !w->previous || !w->current) {
-        l1l2_motion_whole_picture_free(w);
-        return false;
-    }
+    for (int i = 0; i < L1L2_WHOLE_PICTURE_SIZES; i++)
+        if (!create_pair(&w->size[i], &size[i], frame_width, frame_height)) {
+            l1l2_motion_whole_picture_free(w);
+            return false;
+        }
     *out = w;
     return true;
 }
@@ -34,57 +46,65 @@ void l1l2_motion_whole_picture_free(L1L2WholePicture *w)
 {
     if (!w)
         return;
-    l1l2_motion_align_free(w->aligner);
-    l1l2_image_float_pyramid_free(w->previous);
-    l1l2_image_float_pyramid_free(w->current);
+    for (int i = 0; i < L1L2_WHOLE_PICTURE_SIZES; i++) {
+        l1l2_motion_align_free(w->size[i].aligner);
+        l1l2_image_float_pyramid_free(w->size[i].previous);
+        l1l2_image_float_pyramid_free(w->size[i].current);
+    }
     l1l2_mem_free(w);
 }
 
 void l1l2_motion_whole_picture_reset(L1L2WholePicture *w)
 {
+    for (int i = 0; w && i < L1L2_WHOLE_PICTURE_SIZES; i++)
+        w->size[i].has_previous = w->size[i].has_current = false;
+}
+
+static void advance(PicturePair *pair, const L1L2GrayPicture *previous, const L1L2GrayPicture *current)
+{
+    L1L2FloatPyramid *const kept = pair->previous;
+    pair->previous = pair->current;
+    pair->current = kept;
+    pair->gray[0] = *previous;
+    pair->gray[1] = *current;
+    pair->has_previous = pair->has_current;
+    pair->has_current = false;
+}
+
+void l1l2_motion_whole_picture_advance(L1L2WholePicture *w, const L1L2GrayPicture previous[L1L2_WHOLE_PICTURE_SIZES],
+                                       const L1L2GrayPicture current[L1L2_WHOLE_PICTURE_SIZES])
+{
+    for (int i = 0; w && i < L1L2_WHOLE_PICTURE_SIZES; i++)
+        advance(&w->size[i], &previous[i], &current[i]);
+}
+
+static void build(PicturePair *pair)
+{
+    if (!pair->has_previous)
+        l1l2_image_float_pyramid_build(pair->previous, pair->gray[0].data, pair->gray[0].stride);
+    if (!pair->has_current)
+        l1l2_image_float_pyramid_build(pair->current, pair->gray[1].data, pair->gray[1].stride);
+    pair->has_previous = pair->has_current = true;
+}
+
+void l1l2_motion_whole_picture_check(L1L2WholePicture *w, const L1L2Mat *F, const L1L2Mat *expected,
+                                     L1L2Mask mask, L1L2AlignmentCheck *out)
+{
+    *out = (L1L2AlignmentCheck){.better = *F};
     if (!w)
         return;
-    w->has_previous = w->has_current = false;
+    PicturePair *pair = &w->size[L1L2_WHOLE_PICTURE_SMALL];
+    build(pair);
+    l1l2_motion_align_check(pair->aligner, pair->current, pair->previous, F, expected, mask, out);
 }
 
-static void swap(L1L2FloatPyramid **a, L1L2FloatPyramid **b)
+bool l1l2_motion_whole_picture_align(L1L2WholePicture *w, const L1L2AlignmentGuide *guide, L1L2Alignment *out)
 {
-    L1L2FloatPyramid *const kept = *a;
-    *a = *b;
-    *b = kept;
-}
-
-void l1l2_motion_whole_picture_advance(L1L2WholePicture *w, L1L2GrayPicture previous, L1L2GrayPicture current)
-{
-    if (!w)
-        return;
-    w->gray[0] = previous;
-    w->gray[1] = current;
-    swap(&w->previous, &w->current);
-    w->has_previous = w->has_current;
-    w->has_current = false;
-}
-
-static void build(L1L2WholePicture *w)
-{
-    if (!w->has_previous)
-        l1l2_image_float_pyramid_build(w->previous, w->gray[0].data, w->gray[0].stride);
-    if (!w->has_current)
-        l1l2_image_float_pyramid_build(w->current, w->gray[1].data, w->gray[1].stride);
-    w->has_previous = w->has_current = true;
-}
-
-bool l1l2_motion_whole_picture_align(L1L2WholePicture *w, const L1L2Mat *expected, const L1L2Mat *tracks,
-                                     const float trust[L1L2_ALIGN_CELLS], L1L2Alignment *out)
-{
-    L1L2AlignmentGuide guide = {.starts = 1, .trust = trust, .split = true};
     *out = (L1L2Alignment){.F = l1l2_mat_identity(), .blind = l1l2_mat_identity()};
     if (!w)
         return false;
-    build(w);
-    guide.start[0] = *expected;
-    if (tracks)
-        guide.start[guide.starts++] = *tracks;
-    l1l2_motion_align(w->aligner, w->current, w->previous, &guide, out);
+    PicturePair *pair = &w->size[L1L2_WHOLE_PICTURE_FULL];
+    build(pair);
+    l1l2_motion_align(pair->aligner, pair->current, pair->previous, guide, out);
     return l1l2_motion_align_accepts(&out->evidence);
 }

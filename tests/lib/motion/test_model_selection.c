@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Model selection, track weights and static overlays, on synthetic tracks. */
+/* Model selection and track weights, on synthetic tracks. */
 #include <math.h>
 #include <string.h>
 
 #include "checkx.h"
 #include "fit/ransac.h"
 #include "motion/model_selection.h"
-#include "motion/static_overlay.h"
 
 enum { COUNT = 200 };
 
@@ -278,35 +277,6 @@ START_TEST(an_unmeasured_motion_is_predicted_and_decays)
 }
 END_TEST
 
-START_TEST(tracks_that_stand_still_while_the_camera_moves_are_masked_for_a_while)
-{
-    L1L2StaticOverlay o = {.parameters = &l1l2_motion_defaults, .half_w = half_w, .half_h = half_h, .pixel = pixel};
-    const L1L2Mat still = l1l2_mat_identity();
-    L1L2Mask mask;
-    int blocked = 0;
-    setup();
-    l1l2_motion_overlay_reset(&o);
-    place(0, 100, -1, -1, 1, 0.6, &walker, 0.0);
-    place(100, 20, 0.7, 0.8, 0.9, 0.9, &still, 0.0);
-    for (int i = 0; i < 120; i++)
-        inlier[i] = i < 100;
-    /* Nothing is learned while the camera does not move. */
-    for (int t = 0; t < 50; t++)
-        l1l2_motion_overlay_learn(&o, pairs, inlier, 120, &still);
-    ck_assert(!l1l2_motion_overlay_covers(&o, (L1L2Point){0.8 * half_w, 0.85 * half_h}));
-    for (int t = 0; t < 20; t++)
-        l1l2_motion_overlay_learn(&o, pairs, inlier, 120, &walker);
-    ck_assert(l1l2_motion_overlay_covers(&o, (L1L2Point){0.8 * half_w, 0.85 * half_h}));
-    l1l2_motion_overlay_mask(&o, &mask);
-    for (int cell = 0; cell < L1L2_MASK_CELLS; cell++)
-        blocked += mask.blocked[cell];
-    ck_assert(blocked > 0 && blocked <= 12);
-    for (int i = 0; i < 20; i++)
-        l1l2_motion_overlay_mask(&o, &mask);
-    ck_assert(!l1l2_motion_overlay_covers(&o, (L1L2Point){0.8 * half_w, 0.85 * half_h}));
-}
-END_TEST
-
 int main(void)
 {
     Suite *suite = suite_create("model_selection");
@@ -323,7 +293,6 @@ int main(void)
     tcase_add_test(tcase, a_higher_model_returns_at_once_if_no_lower_one_fits);
     tcase_add_test(tcase, an_affine_motion_needs_tracks_all_over_the_frame);
     tcase_add_test(tcase, an_unmeasured_motion_is_predicted_and_decays);
-    tcase_add_test(tcase, tracks_that_stand_still_while_the_camera_moves_are_masked_for_a_while);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Static overlays before a moving camera: burnt-in text over a scene of little contrast. */
+/* Static overlays before a moving camera: the memory of where they are, and burnt-in text over a scene of little
+ * contrast. */
 #include "common/rng.h"
 #include "motion/motion_fixture.h"
+#include "motion/static_overlay.h"
 
 enum { WIDTH = 640, HEIGHT = 360, TEXT_W = 160, TEXT_H = 28 };
 
@@ -16,6 +18,106 @@ static void burn_in(uint8_t *picture, int left, int top)
                 picture[(top + y + k / 4) * WIDTH + left + x + k % 4] = level;
         }
 }
+
+enum { SMALL_W = 160, SMALL_H = 90, PATCH = 20, PATCH_X = 100, PATCH_Y = 30 };
+
+/* A texture of noise that has moved by `shift` pixels, with a patch that stands still, or with a patch that moves and
+ * all else still. */
+static void draw(uint8_t *picture, int shift, bool patch_moves)
+{
+    for (int y = 0; y < SMALL_H; y++)
+        for (int x = 0; x < SMALL_W; x++) {
+            const bool patch = x >= PATCH_X && x < PATCH_X + PATCH && y >= PATCH_Y && y < PATCH_Y + PATCH;
+            const uint32_t at = (uint32_t)(x + (patch == patch_moves ? shift : 0)) * 2654435761u + (uint32_t)y * 40503u;
+            picture[y * SMALL_W + x] = (uint8_t)((at ^ at >> 15) * 2246822519u >> 24);
+        }
+}
+
+typedef struct Overlay {
+    L1L2StaticOverlay o;
+    L1L2Point in, out; /* of the patch */
+    L1L2Mat camera;    /* two pixels a frame */
+} Overlay;
+
+static Overlay overlay_new(void)
+{
+    Overlay t = {.o = {.parameters = &l1l2_motion_defaults,
+                       .half_w = 0.5 * SMALL_W / hypot(SMALL_W, SMALL_H),
+                       .half_h = 0.5 * SMALL_H / hypot(SMALL_W, SMALL_H)}};
+    const double unit = 1.0 / hypot(SMALL_W, SMALL_H);
+    ck_assert(l1l2_motion_overlay_init(&t.o, SMALL_W, SMALL_H));
+    l1l2_motion_overlay_reset(&t.o);
+    t.in = (L1L2Point){(PATCH_X + 10 - 0.5 * SMALL_W) * unit, (PATCH_Y + 10 - 0.5 * SMALL_H) * unit};
+    t.out = (L1L2Point){-t.in.x, t.in.y};
+    t.camera = l1l2_mat_translation(2.0 * unit, 0.0);
+    return t;
+}
+
+static void learn(Overlay *t, int frames, int speed, bool patch_moves, const L1L2Mat *F)
+{
+    uint8_t now[SMALL_W * SMALL_H], previous[SMALL_W * SMALL_H];
+    const L1L2GrayPicture a = {now, SMALL_W, SMALL_W, SMALL_H}, b = {previous, SMALL_W, SMALL_W, SMALL_H};
+    for (int i = 1; i <= frames; i++) {
+        draw(now, i * speed, patch_moves);
+        draw(previous, (i - 1) * speed, patch_moves);
+        l1l2_motion_overlay_learn(&t->o, &a, &b, F);
+    }
+}
+
+START_TEST(what_stands_still_while_the_camera_moves_is_covered_until_nothing_is_seen_of_it_for_long)
+{
+    Overlay t = overlay_new();
+    learn(&t, 4, 2, false, &t.camera);
+    ck_assert(!l1l2_motion_overlay_covers(&t.o, t.in));
+    learn(&t, 26, 2, false, &t.camera);
+    ck_assert(l1l2_motion_overlay_covers(&t.o, t.in));
+    ck_assert(!l1l2_motion_overlay_covers(&t.o, t.out));
+    const L1L2Mask mask = l1l2_motion_overlay_mask(&t.o);
+    int blocked = 0;
+    for (int i = 0; i < mask.width * mask.height; i++)
+        blocked += mask.blocked[i];
+    ck_assert_int_ge(blocked, PATCH * PATCH * 3 / 4);
+    ck_assert_int_le(blocked, (PATCH + 4) * (PATCH + 4));
+    for (int i = 0; i < 20; i++)
+        l1l2_motion_overlay_age(&t.o);
+    ck_assert(!l1l2_motion_overlay_covers(&t.o, t.in));
+    ck_assert_ptr_null(l1l2_motion_overlay_mask(&t.o).blocked);
+    l1l2_motion_overlay_clear(&t.o);
+}
+END_TEST
+
+START_TEST(an_overlay_that_goes_is_forgotten_at_once_where_the_scene_moves)
+{
+    Overlay t = overlay_new();
+    learn(&t, 40, 2, false, &t.camera);
+    ck_assert(l1l2_motion_overlay_covers(&t.o, t.in));
+    uint8_t now[SMALL_W * SMALL_H], previous[SMALL_W * SMALL_H];
+    const L1L2GrayPicture a = {now, SMALL_W, SMALL_W, SMALL_H}, b = {previous, SMALL_W, SMALL_W, SMALL_H};
+    for (int i = 1; i <= 20; i++) {
+        for (int y = 0; y < SMALL_H; y++)
+            for (int x = 0; x < SMALL_W; x++) {
+                const uint32_t p = (uint32_t)(x + 2 * i) * 2654435761u + (uint32_t)y * 40503u, q = p - 2u * 2654435761u;
+                now[y * SMALL_W + x] = (uint8_t)((p ^ p >> 15) * 2246822519u >> 24);
+                previous[y * SMALL_W + x] = (uint8_t)((q ^ q >> 15) * 2246822519u >> 24);
+            }
+        l1l2_motion_overlay_learn(&t.o, &a, &b, &t.camera);
+    }
+    ck_assert(!l1l2_motion_overlay_covers(&t.o, t.in));
+    l1l2_motion_overlay_clear(&t.o);
+}
+END_TEST
+
+START_TEST(nothing_is_an_overlay_while_the_camera_stands_or_if_most_of_the_picture_stands)
+{
+    const L1L2Mat still = l1l2_mat_identity();
+    Overlay t = overlay_new();
+    learn(&t, 40, 0, false, &still);
+    ck_assert_ptr_null(l1l2_motion_overlay_mask(&t.o).blocked);
+    learn(&t, 40, 2, true, &t.camera); /* the motion of a subject */
+    ck_assert_ptr_null(l1l2_motion_overlay_mask(&t.o).blocked);
+    l1l2_motion_overlay_clear(&t.o);
+}
+END_TEST
 
 START_TEST(burnt_in_text_is_not_taken_for_a_dark_scene_that_stands_still)
 {
@@ -52,6 +154,9 @@ int main(void)
     Suite *suite = suite_create("motion_overlay");
     TCase *tcase = tcase_create("motion_overlay");
     tcase_set_timeout(tcase, 60);
+    tcase_add_test(tcase, what_stands_still_while_the_camera_moves_is_covered_until_nothing_is_seen_of_it_for_long);
+    tcase_add_test(tcase, an_overlay_that_goes_is_forgotten_at_once_where_the_scene_moves);
+    tcase_add_test(tcase, nothing_is_an_overlay_while_the_camera_stands_or_if_most_of_the_picture_stands);
     tcase_add_test(tcase, burnt_in_text_is_not_taken_for_a_dark_scene_that_stands_still);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);

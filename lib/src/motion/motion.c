@@ -374,11 +374,10 @@ static Doubt find_doubt(L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2Sel
         return IN_DOUBT;
     if (selected->quality < p->align_below_quality && selected->inliers <= p->align_max_inlier_share * tracks->count)
         return IN_DOUBT;
-    const bool repeated = repeats(m, &selected->F);
-    if (m->since_contradiction <= 60 && repeated)
-        return CONTRADICTED;
-    if (!m->overlay.any && m->since_contradiction > 60 && !repeated)
+    if (!repeats(m, &selected->F))
         return SURE;
+    if (m->since_contradiction <= 60)
+        return CONTRADICTED;
     l1l2_motion_whole_picture_check(m->whole, &selected->F, expected, l1l2_motion_overlay_mask(&m->overlay), &check);
     return check.against >= p->align_min_against && check.support <= p->align_max_support ? CONTRADICTED : SURE;
 }

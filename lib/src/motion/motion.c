@@ -410,6 +410,17 @@ static void align_pictures(L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2
                                                           p->align_max_quality));
 }
 
+/* Two motions have about equal weight, and whole pictures do not tell either. Many tracks are never given up: one of the
+ * two is right, and the tracks' history says which is the likelier. */
+static void follow_history(L1L2Motion *m, const L1L2TrackSet *tracks, L1L2SelectedModel *selected)
+{
+    if (selected->source != L1L2STAB_MOTION_SOURCE_NONE || !selected->ambiguous ||
+        tracks->count < m->cfg.parameters->many_tracks)
+        return;
+    memcpy(m->core, m->inlier, (size_t)tracks->count * sizeof *m->core);
+    *selected = l1l2_motion_model_adopt(&m->selection, &selected->F, selected->inliers, selected->quality);
+}
+
 /* ---- One frame ---- */
 
 /* Drops all tracks and predicts the motion. */
@@ -445,6 +456,7 @@ static bool measure(L1L2Motion *m, L1L2MotionResult *out)
     }
     const L1L2Mat tracks_F = selected.F;
     align_pictures(m, &tracks, &expected, &selected);
+    follow_history(m, &tracks, &selected);
     m->tracks_F = tracks_F;
     m->had_detail = l1l2_image_thumbnail_has_detail(&m->thumbnail);
     const bool measured = selected.source != L1L2STAB_MOTION_SOURCE_NONE;

@@ -90,6 +90,8 @@
         "test_motion_movers: a subject on 60 % is as fast as the camera now and then") \
     ROW(min_quality, 0.12, "[0, 1]", "below it neither of two motions is followed", \
         "test_model_selection: two motions of equal weight have less; sweep: same") \
+    ROW(many_tracks, 80, "tracks", "with so many, the likelier of two motions is followed", \
+        "TODO") \
     ROW(full_coverage, 0.3, "of the cells", "with inliers in them the frame counts as covered", \
         "MediaPipe's 30 %") \
     /* Whole pictures: motion.c, whole_picture.c */ \

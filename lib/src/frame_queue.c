@@ -9,7 +9,7 @@ _Static_assert((int)L1L2_PATH_PAST <= (int)L1L2_FRAME_QUEUE_PAST, "the path look
 _Static_assert((int)L1L2_SHUTTER_FILTER_PAST <= (int)L1L2_FRAME_QUEUE_PAST,
                "the rolling-shutter filter looks back on more than is kept");
 
-static L1L2QueuedFrame *record_of(const L1L2FrameQueue *queue, int64_t t)
+L1L2QueuedFrame *l1l2_frame_queue_at(const L1L2FrameQueue *queue, int64_t t)
 {
     assert(t >= queue->begin && t < queue->end);
     return &queue->records[t % queue->rows];
@@ -53,12 +53,12 @@ L1L2QueuedFrame *l1l2_frame_queue_append(L1L2FrameQueue *queue)
 
 L1L2QueuedFrame *l1l2_frame_queue_oldest(const L1L2FrameQueue *queue)
 {
-    return record_of(queue, queue->begin);
+    return l1l2_frame_queue_at(queue, queue->begin);
 }
 
 L1L2QueuedFrame *l1l2_frame_queue_newest(const L1L2FrameQueue *queue)
 {
-    return record_of(queue, queue->end - 1);
+    return l1l2_frame_queue_at(queue, queue->end - 1);
 }
 
 void l1l2_frame_queue_drop_oldest(L1L2FrameQueue *queue)

@@ -25,6 +25,7 @@ typedef struct L1L2QueuedFrame {
     int tracks, inliers;
     double quality;
     bool failed;                 /* measuring met an error */
+    bool bridged;                /* a bridge over frames that could not be tracked changed the motion */
     L1L2PathFrame path;          /* motion F, in diagonals, and what the path makes of it */
     double F_px[9];              /* the same motion as the caller sees it (units.h) */
     L1L2ShutterFrame shutter;    /* what the motion leaves */
@@ -58,6 +59,9 @@ L1L2QueuedFrame *l1l2_frame_queue_append(L1L2FrameQueue *queue);
 /* One must be held. */
 L1L2QueuedFrame *l1l2_frame_queue_oldest(const L1L2FrameQueue *queue);
 L1L2QueuedFrame *l1l2_frame_queue_newest(const L1L2FrameQueue *queue);
+
+/* A frame that is held: number t, [begin, end). */
+L1L2QueuedFrame *l1l2_frame_queue_at(const L1L2FrameQueue *queue, int64_t t);
 
 /* Releases the oldest frame. */
 void l1l2_frame_queue_drop_oldest(L1L2FrameQueue *queue);

@@ -14,6 +14,8 @@ static unsigned flags_of(const L1L2QueuedFrame *record)
         flags |= L1L2STAB_INFO_MOTION_LOST;
     if (record->failed)
         flags |= L1L2STAB_INFO_MOTION_FAILED | L1L2STAB_INFO_MOTION_LOST;
+    if (record->bridged)
+        flags |= L1L2STAB_INFO_BRIDGED;
     if (record->path.fallback)
         flags |= L1L2STAB_INFO_PATH_FALLBACK;
     if (record->path.early)

@@ -175,6 +175,38 @@ static void add_solve_time(L1L2Stab *s, int64_t start_ns)
     l1l2_frame_queue_oldest(&s->queue)->solve_ns += l1l2_clock_ns() - start_ns;
 }
 
+/* The record of the frame `back` frames before the newest. */
+static L1L2QueuedFrame *record_before(L1L2Stab *s, int back)
+{
+    return l1l2_frame_queue_at(&s->queue, s->queue.end - 1 - back);
+}
+
+/* A bridge changed the motions of frames before the newest. Those that the path has not decided get their new motion;
+ * the first of these, or the newest frame, makes up for what decided ones lack. Returns the newest frame's motion. */
+static L1L2Mat amend_bridged(L1L2Stab *s, const L1L2MotionResult *motion)
+{
+    const int undecided = l1l2_path_undecided(s->path);
+    L1L2Mat had = l1l2_mat_identity(), wanted = had, inverse;
+    for (int i = 0; i < motion->bridged; i++) {
+        const int back = motion->bridged - 1 - i; /* from the newest frame of the path, which is the one before ours */
+        L1L2QueuedFrame *record = back < undecided ? record_before(s, back + 1) : NULL;
+        wanted = l1l2_mat_mul(wanted, motion->bridged_F[i]);
+        if (!record) {
+            had = l1l2_mat_mul(had, l1l2_path_motion(s->path, back));
+            continue;
+        }
+        l1l2_mat_inverse(had, &inverse);
+        const L1L2Mat F = l1l2_mat_mul(inverse, wanted);
+        l1l2_units_export(&F, s->diagonal_px, record->F_px);
+        const L1L2Mat as_told = l1l2_units_import(record->F_px, s->diagonal_px);
+        l1l2_path_amend(s->path, back, &as_told);
+        record->bridged = true;
+        had = wanted = l1l2_mat_identity();
+    }
+    l1l2_mat_inverse(had, &inverse);
+    return l1l2_mat_mul(inverse, l1l2_mat_mul(wanted, motion->F));
+}
+
 /* Steps 2b and 3 for the newest frame, whose motion is known: in pixels in F_px, all else in *motion. */
 static void extend_path(L1L2Stab *s, const L1L2MotionResult *motion, const double F_px[9])
 {
@@ -232,6 +264,10 @@ static void settle(L1L2Stab *s)
             s->error = result;
     }
     double F_px[9];
+    if (motion.bridged > 0) {
+        motion.F = amend_bridged(s, &motion);
+        l1l2_frame_queue_newest(&s->queue)->bridged = true;
+    }
     l1l2_units_export(&motion.F, s->diagonal_px, F_px);
     extend_path(s, &motion, F_px);
 }

@@ -291,6 +291,7 @@ typedef enum L1L2StabMotionSource {
 #define L1L2STAB_INFO_PATH_FALLBACK (1u << 2) /* the solver did not converge: a feasible path was held instead */
 #define L1L2STAB_INFO_EARLY (1u << 3)         /* l1l2stab_hurry() decided the frame: its look-ahead was shorter */
 #define L1L2STAB_INFO_MOTION_FAILED (1u << 4) /* measuring met an error (l1l2stab_take_error()): a path starts here */
+#define L1L2STAB_INFO_BRIDGED (1u << 5)       /* F was changed by aligning pictures across frames that have no tracks */
 
 /* The stages that a frame's time is spent in. */
 typedef enum L1L2StabStage {

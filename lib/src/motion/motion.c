@@ -9,6 +9,7 @@
 #include "common/mem.h"
 #include "fit/ransac.h"
 #include "motion/model_selection.h"
+#include "motion/motion_gap.h"
 #include "motion/shot_cut.h"
 #include "motion/shot_dissolve.h"
 #include "motion/static_overlay.h"
@@ -52,7 +53,8 @@ struct L1L2Motion {
     L1L2ShotCut cut;
     L1L2ShotDissolve dissolve;
     L1L2WholePicture *whole;  /* NULL: pictures too small */
-    int since_contradiction;
+    int since_contradiction;  /* frames */
+    L1L2MotionGap gap;        /* of frames whose tracks yielded no motion */
     L1L2Mat tracks_F;         /* what the tracks of the frame before yielded */
     L1L2ShutterGate gate;     /* which of the residuals follow the camera's motion */
 };
@@ -152,6 +154,7 @@ void l1l2_motion_reset(L1L2Motion *m)
 /* The current picture is the first of a shot, or the first after a reset. */
 static void start_shot(L1L2Motion *m)
 {
+    l1l2_motion_gap_close(&m->gap);
     m->points = 0;
     m->since_selection = (int)m->cfg.parameters->reselect_frames;
     l1l2_motion_cut_start(&m->cut, &m->thumbnail);
@@ -421,6 +424,54 @@ static void follow_history(L1L2Motion *m, const L1L2TrackSet *tracks, L1L2Select
     *selected = l1l2_motion_model_adopt(&m->selection, &selected->F, selected->inliers, selected->quality);
 }
 
+/* ---- Bridges: over frames that could not be tracked ---- */
+
+/* The motion from the current picture to the reference, by aligning the two. False: it was not found. */
+static bool align_with_reference(L1L2Motion *m, L1L2Mat *G)
+{
+    L1L2Alignment a;
+    L1L2AlignmentGuide guide = {.start = {l1l2_motion_gap_product(&m->gap)}, .starts = 1,
+                                .mask = l1l2_motion_overlay_mask(&m->overlay)};
+    if (!l1l2_image_thumbnail_has_detail(&m->thumbnail) || !l1l2_motion_whole_picture_bridge(m->whole, &guide, &a) ||
+        fabs(log(a.evidence.gain)) > m->cfg.parameters->align_max_gain)
+        return false;
+    *G = a.F;
+    return true;
+}
+
+/* Opens a gap at a frame whose tracks yielded no motion. In a gap, measures the motion to the picture before it, and
+ * makes the motions of the frames between, and of this one, agree with that. The gap ends when a picture is sharp
+ * again. */
+static void bridge(L1L2Motion *m, bool tracked, L1L2SelectedModel *selected, L1L2MotionResult *out)
+{
+    const bool measured = selected->source != L1L2STAB_MOTION_SOURCE_NONE, opens = m->gap.frames == 0;
+    const L1L2Mat *F = measured ? &selected->F : &m->selection.last;
+    L1L2Mat G;
+    if (opens && (tracked || !m->had_detail))
+        return;
+    if (opens)
+        l1l2_motion_whole_picture_keep(m->whole);
+    if (!l1l2_motion_gap_add(&m->gap, F, measured ? 1.0 : 0.0) || opens)
+        return;
+    if (!tracked && !l1l2_motion_whole_picture_is_sharp(m->whole))
+        return;
+    if (!align_with_reference(m, &G)) {
+        if (tracked)
+            l1l2_motion_gap_close(&m->gap);
+        return;
+    }
+    const int changed = l1l2_motion_gap_bridge(&m->gap, &G);
+    const L1L2Mat *newest = &m->gap.F[m->gap.frames - 1];
+    if (changed > 0) {
+        out->bridged = changed - 1;
+        memcpy(out->bridged_F, newest - out->bridged, (size_t)out->bridged * sizeof *out->bridged_F);
+        *selected = l1l2_motion_model_adopt(&m->selection, newest, selected->inliers,
+                                            fmin(selected->quality, m->cfg.parameters->align_max_quality));
+        selected->source = L1L2STAB_MOTION_SOURCE_ALIGNMENT;
+    }
+    l1l2_motion_gap_close(&m->gap);
+}
+
 /* ---- One frame ---- */
 
 /* Drops all tracks and predicts the motion. */
@@ -450,16 +501,18 @@ static bool measure(L1L2Motion *m, L1L2MotionResult *out)
     L1L2SelectedModel selected =
         l1l2_motion_model_select(&m->selection, &m->weights, &tracks, reselected, m->inlier, m->core);
     measure_residual(m, &tracks, &selected, out);
-    if (l1l2_motion_cut_push(&m->cut, &m->thumbnail, selected.source != L1L2STAB_MOTION_SOURCE_NONE)) {
-        cut_to(m, "a cut");
-        return false;
-    }
     const L1L2Mat tracks_F = selected.F;
+    const bool tracked = selected.source != L1L2STAB_MOTION_SOURCE_NONE;
     align_pictures(m, &tracks, &expected, &selected);
     follow_history(m, &tracks, &selected);
     m->tracks_F = tracks_F;
+    bridge(m, tracked, &selected, out);
     m->had_detail = l1l2_image_thumbnail_has_detail(&m->thumbnail);
     const bool measured = selected.source != L1L2STAB_MOTION_SOURCE_NONE;
+    if (l1l2_motion_cut_push(&m->cut, &m->thumbnail, measured)) {
+        cut_to(m, "a cut");
+        return false;
+    }
     if (measured)
         learn(m, &selected.F);
     else

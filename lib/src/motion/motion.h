@@ -17,6 +17,7 @@
 
 #include "common/geom.h"
 #include "image/format.h"
+#include "motion/motion_bridge.h"
 #include "motion/parameters.h"
 #include "rolling_shutter/model.h"
 
@@ -39,6 +40,8 @@ typedef struct L1L2MotionResult {
     L1L2StabMotionSource model; /* NONE: a path starts, because the caller said so or another shot begins */
     int tracks, inliers;
     double quality;             /* [0, 1], as in L1L2StabInfo */
+    int bridged;                /* frames before this one whose motions a bridge changed; 0: none */
+    L1L2Mat bridged_F[L1L2_BRIDGE_MAX_FRAMES]; /* these, the oldest first; each frame's to the one before it */
     bool has_residual;          /* the rolling-shutter residual was measured */
     L1L2ShutterMeasurement residual;   /* of F */
     int64_t scale_ns, track_ns, fit_ns;

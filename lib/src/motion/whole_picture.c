@@ -2,6 +2,11 @@
 #include "motion/whole_picture.h"
 
 #include "common/mem.h"
+#include "motion/motion_blur.h"
+
+/* Of the slopes' energy that the reference has; less is blur. Two sharp pictures of a pan have 0.85 to 1.15 of each
+ * other's. */
+static const double sharp_share = 0.6;
 
 /* An aligner with the two pictures that it compares, at one size. */
 typedef struct PicturePair {
@@ -13,6 +18,7 @@ typedef struct PicturePair {
 
 struct L1L2WholePicture {
     PicturePair size[L1L2_WHOLE_PICTURE_SIZES];
+    L1L2FloatPyramid *reference; /* the last picture that was kept */
 };
 
 static bool create_pair(PicturePair *pair, const L1L2GrayPicture *size, double frame_width, double frame_height)
@@ -38,6 +44,12 @@ bool l1l2_motion_whole_picture_create(L1L2WholePicture **out, const L1L2GrayPict
             l1l2_motion_whole_picture_free(w);
             return false;
         }
+    const L1L2GrayPicture *full = &size[L1L2_WHOLE_PICTURE_FULL];
+    w->reference = l1l2_image_float_pyramid_new(full->width, full->height);
+    if (!w->reference) {
+        l1l2_motion_whole_picture_free(w);
+        return false;
+    }
     *out = w;
     return true;
 }
@@ -51,6 +63,7 @@ void l1l2_motion_whole_picture_free(L1L2WholePicture *w)
         l1l2_image_float_pyramid_free(w->size[i].previous);
         l1l2_image_float_pyramid_free(w->size[i].current);
     }
+    l1l2_image_float_pyramid_free(w->reference);
     l1l2_mem_free(w);
 }
 
@@ -98,13 +111,47 @@ void l1l2_motion_whole_picture_check(L1L2WholePicture *w, const L1L2Mat *F, cons
     l1l2_motion_align_check(pair->aligner, pair->current, pair->previous, F, expected, mask, out);
 }
 
-bool l1l2_motion_whole_picture_align(L1L2WholePicture *w, const L1L2AlignmentGuide *guide, L1L2Alignment *out)
+/* Aligns the current picture with the previous one, or with the reference. */
+static bool align(L1L2WholePicture *w, bool with_reference, const L1L2AlignmentGuide *guide, L1L2Alignment *out)
 {
     *out = (L1L2Alignment){.F = l1l2_mat_identity(), .blind = l1l2_mat_identity()};
     if (!w)
         return false;
     PicturePair *pair = &w->size[L1L2_WHOLE_PICTURE_FULL];
     build(pair);
-    l1l2_motion_align(pair->aligner, pair->current, pair->previous, guide, out);
+    l1l2_motion_align(pair->aligner, pair->current, with_reference ? w->reference : pair->previous, guide, out);
     return l1l2_motion_align_accepts(&out->evidence);
+}
+
+bool l1l2_motion_whole_picture_align(L1L2WholePicture *w, const L1L2AlignmentGuide *guide, L1L2Alignment *out)
+{
+    return align(w, false, guide, out);
+}
+
+void l1l2_motion_whole_picture_keep(L1L2WholePicture *w)
+{
+    if (!w)
+        return;
+    PicturePair *pair = &w->size[L1L2_WHOLE_PICTURE_FULL];
+    build(pair);
+    L1L2FloatPyramid *const kept = pair->previous;
+    pair->previous = w->reference;
+    w->reference = kept;
+    pair->has_previous = false;
+}
+
+bool l1l2_motion_whole_picture_bridge(L1L2WholePicture *w, const L1L2AlignmentGuide *guide, L1L2Alignment *out)
+{
+    return align(w, true, guide, out);
+}
+
+bool l1l2_motion_whole_picture_is_sharp(L1L2WholePicture *w)
+{
+    if (!w)
+        return true;
+    PicturePair *pair = &w->size[L1L2_WHOLE_PICTURE_FULL];
+    build(pair);
+    const L1L2StructureTensor now = l1l2_motion_blur_tensor(pair->current);
+    const L1L2StructureTensor then = l1l2_motion_blur_tensor(w->reference);
+    return now.xx + now.yy >= sharp_share * (then.xx + then.yy);
 }

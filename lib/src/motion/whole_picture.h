@@ -42,4 +42,13 @@ void l1l2_motion_whole_picture_check(L1L2WholePicture *w, const L1L2Mat *F, cons
  * motion. */
 bool l1l2_motion_whole_picture_align(L1L2WholePicture *w, const L1L2AlignmentGuide *guide, L1L2Alignment *out);
 
+/* Keeps the previous picture as the reference. */
+void l1l2_motion_whole_picture_keep(L1L2WholePicture *w);
+
+/* The same between the current picture and the reference, which was kept. */
+bool l1l2_motion_whole_picture_bridge(L1L2WholePicture *w, const L1L2AlignmentGuide *guide, L1L2Alignment *out);
+
+/* True if the current picture is about as sharp as the reference. */
+bool l1l2_motion_whole_picture_is_sharp(L1L2WholePicture *w);
+
 #endif

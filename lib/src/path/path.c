@@ -277,6 +277,24 @@ void l1l2_path_push(L1L2Path *path, const L1L2PathInput *input)
     advance(path, false);
 }
 
+int l1l2_path_undecided(const L1L2Path *path)
+{
+    return (int)(path->pushed - path->decided);
+}
+
+L1L2Mat l1l2_path_motion(const L1L2Path *path, int back)
+{
+    return frame_at(path, path->pushed - 1 - back)->F;
+}
+
+void l1l2_path_amend(L1L2Path *path, int back, const L1L2Mat *F)
+{
+    const int64_t frame = path->pushed - 1 - back;
+    assert(back >= 0 && frame >= path->decided);
+    if (frame > path->start)
+        frame_at(path, frame)->F = usable_motion(path, F);
+}
+
 void l1l2_path_hurry(L1L2Path *path, int frames)
 {
     const int64_t undecided = path->pulled + frames - path->decided;

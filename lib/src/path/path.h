@@ -70,8 +70,8 @@ typedef struct L1L2PathInput {
 
 #define L1L2_CROP_STEP 0.005
 
-/* Pulled frames that the path still reads. */
-enum { L1L2_PATH_PAST = 3 };
+/* Pulled frames that the path still reads: three for a continuous join, and seven for l1l2_path_motion(). */
+enum { L1L2_PATH_PAST = 7 };
 
 /* On error *out is NULL. cfg->log and the rows of cfg->frames must outlive the object. */
 L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg);
@@ -83,6 +83,16 @@ void l1l2_path_reset(L1L2Path *path);
 /* The next frame. Fills in its row, and solves every window that is complete. At most `window` - 1 frames may be
  * waiting for l1l2_path_pull(). */
 void l1l2_path_push(L1L2Path *path, const L1L2PathInput *input);
+
+/* The frames that are not decided: the newest ones. */
+int l1l2_path_undecided(const L1L2Path *path);
+
+/* The motion of a frame as it is used: `back` frames before the newest, at most L1L2_PATH_PAST. */
+L1L2Mat l1l2_path_motion(const L1L2Path *path, int back);
+
+/* Another motion for one of these: `back` frames before the newest, 0 <= back < l1l2_path_undecided(). Not used where a
+ * path starts. */
+void l1l2_path_amend(L1L2Path *path, int back, const L1L2Mat *F);
 
 /* Decides the `frames` oldest frames that have not been pulled, or all there are, by what has come. Those that already
  * are decided stay as they are. */

@@ -460,15 +460,12 @@ static void bridge(L1L2Motion *m, bool tracked, L1L2SelectedModel *selected, L1L
             l1l2_motion_gap_close(&m->gap);
         return;
     }
-    const int changed = l1l2_motion_gap_bridge(&m->gap, &G);
-    const L1L2Mat *newest = &m->gap.F[m->gap.frames - 1];
-    if (changed > 0) {
-        out->bridged = changed - 1;
-        memcpy(out->bridged_F, newest - out->bridged, (size_t)out->bridged * sizeof *out->bridged_F);
-        *selected = l1l2_motion_model_adopt(&m->selection, newest, selected->inliers,
-                                            fmin(selected->quality, m->cfg.parameters->align_max_quality));
-        selected->source = L1L2STAB_MOTION_SOURCE_ALIGNMENT;
-    }
+    l1l2_motion_gap_bridge(&m->gap, &G);
+    out->bridged = m->gap.frames - 1;
+    memcpy(out->bridged_F, m->gap.F, (size_t)out->bridged * sizeof *out->bridged_F);
+    *selected = l1l2_motion_model_adopt(&m->selection, &m->gap.F[out->bridged], selected->inliers,
+                                        fmin(selected->quality, m->cfg.parameters->align_max_quality));
+    selected->source = L1L2STAB_MOTION_SOURCE_ALIGNMENT;
     l1l2_motion_gap_close(&m->gap);
 }
 

@@ -10,8 +10,7 @@
 #include "motion/motion_bridge.h"
 
 typedef struct L1L2MotionGap {
-    int frames;  /* since the reference; 0: there is no gap */
-    int settled; /* of these, how many a bridge has settled */
+    int frames; /* since the reference; 0: there is no gap */
     L1L2Mat F[L1L2_BRIDGE_MAX_FRAMES];
     double weight[L1L2_BRIDGE_MAX_FRAMES]; /* 0: not measured */
 } L1L2MotionGap;
@@ -25,8 +24,8 @@ bool l1l2_motion_gap_add(L1L2MotionGap *gap, const L1L2Mat *F, double weight);
 /* The motion from the newest frame to the reference, by the frames' own motions. */
 L1L2Mat l1l2_motion_gap_product(const L1L2MotionGap *gap);
 
-/* G is the motion from the newest frame to the reference. Changes the motions of the frames that are not yet settled,
- * the newest ones, and returns their number. */
-int l1l2_motion_gap_bridge(L1L2MotionGap *gap, const L1L2Mat *G);
+/* G is the motion from the newest frame to the reference: the motions of all frames of the gap are changed so that G is
+ * their product. */
+void l1l2_motion_gap_bridge(L1L2MotionGap *gap, const L1L2Mat *G);
 
 #endif

@@ -55,6 +55,8 @@ count (GstL1L2StabReport * report, const L1L2StabInfo * info)
 
   report->n_out++;
   report->n_lost += (info->flags & L1L2STAB_INFO_MOTION_LOST) != 0;
+  report->n_aligned += info->model == L1L2STAB_MOTION_SOURCE_ALIGNMENT;
+  report->n_bridged += (info->flags & L1L2STAB_INFO_BRIDGED) != 0;
   report->n_fallbacks += (info->flags & L1L2STAB_INFO_PATH_FALLBACK) != 0;
   report->n_early += (info->flags & L1L2STAB_INFO_EARLY) != 0;
   if (info->flags & L1L2STAB_INFO_PATH_START) {
@@ -146,6 +148,8 @@ gst_l1l2_stab_report_message (GstL1L2StabReport * report, GstBuffer * output,
       (info->flags & L1L2STAB_INFO_PATH_START) != 0,
       "motion-lost", G_TYPE_BOOLEAN,
       (info->flags & L1L2STAB_INFO_MOTION_LOST) != 0,
+      "bridged", G_TYPE_BOOLEAN,
+      (info->flags & L1L2STAB_INFO_BRIDGED) != 0,
       "path-fallback", G_TYPE_BOOLEAN,
       (info->flags & L1L2STAB_INFO_PATH_FALLBACK) != 0,
       "early", G_TYPE_BOOLEAN, (info->flags & L1L2STAB_INFO_EARLY) != 0, NULL);
@@ -182,6 +186,8 @@ gst_l1l2_stab_report_stats (GstL1L2StabReport * report, gint window,
       now.quality_sum / now.n_motions : 0.0,
       "quality-min", G_TYPE_DOUBLE, now.quality_min,
       "motion-lost", G_TYPE_UINT64, now.n_lost,
+      "aligned", G_TYPE_UINT64, now.n_aligned,
+      "bridged", G_TYPE_UINT64, now.n_bridged,
       "cuts", G_TYPE_UINT64, now.n_cuts,
       "path-fallbacks", G_TYPE_UINT64, now.n_fallbacks,
       "early", G_TYPE_UINT64, now.n_early,

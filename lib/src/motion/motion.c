@@ -54,6 +54,7 @@ struct L1L2Motion {
     L1L2ShotDissolve dissolve;
     L1L2WholePicture *whole;  /* NULL: pictures too small */
     int since_contradiction;  /* frames */
+    bool was_tracked;         /* the tracks of the frame before yielded a motion, or it is the first of a shot */
     L1L2MotionGap gap;        /* of frames whose tracks yielded no motion */
     L1L2Mat tracks_F;         /* what the tracks of the frame before yielded */
     L1L2ShutterGate gate;     /* which of the residuals follow the camera's motion */
@@ -155,6 +156,7 @@ void l1l2_motion_reset(L1L2Motion *m)
 static void start_shot(L1L2Motion *m)
 {
     l1l2_motion_gap_close(&m->gap);
+    m->was_tracked = true;
     m->points = 0;
     m->since_selection = (int)m->cfg.parameters->reselect_frames;
     l1l2_motion_cut_start(&m->cut, &m->thumbnail);
@@ -439,7 +441,7 @@ static bool align_with_reference(L1L2Motion *m, L1L2Mat *G)
     return true;
 }
 
-/* Opens a gap at a frame whose tracks yielded no motion. In a gap, measures the motion to the picture before it, and
+/* Opens a gap at a frame whose tracks yielded no motion, if those of the frame before did. In a gap, measures the motion to the picture before it, and
  * makes the motions of the frames between, and of this one, agree with that. The gap ends when a picture is sharp
  * again. */
 static void bridge(L1L2Motion *m, bool tracked, L1L2SelectedModel *selected, L1L2MotionResult *out)
@@ -447,7 +449,9 @@ static void bridge(L1L2Motion *m, bool tracked, L1L2SelectedModel *selected, L1L
     const bool measured = selected->source != L1L2STAB_MOTION_SOURCE_NONE, opens = m->gap.frames == 0;
     const L1L2Mat *F = measured ? &selected->F : &m->selection.last;
     L1L2Mat G;
-    if (opens && (tracked || !m->had_detail))
+    const bool follows_tracked = m->was_tracked;
+    m->was_tracked = tracked;
+    if (opens && (tracked || !follows_tracked || !m->had_detail))
         return;
     if (opens)
         l1l2_motion_whole_picture_keep(m->whole);

@@ -3,8 +3,9 @@
  * The motion of the synthetic clips in which corners fail, as the library measures it, against the truth.
  *
  * For each case and noise, over three seeds: the rms and the worst error of F_t, px at the frame's corners; frames
- * whose motion was not measured; frames measured from whole pictures; frames whose motion a bridge changed later; and `behind`: the worst error of the motion from
- * the last sharp frame before a gap of blurred ones to the first sharp one behind it.
+ * whose motion was not measured; frames measured from whole pictures; frames whose motion a bridge changed later; and
+ * `behind`: the worst error of the motion from the last sharp frame before a gap of blurred ones to the first sharp one
+ * behind it.
  *
  * usage: bench_motion_hard [CASE [NOISE]]     default: all cases of synth_hard.h, noise of sigma 2, 5 and 10
  */

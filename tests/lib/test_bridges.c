@@ -3,6 +3,7 @@
  * is. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "checkx.h"
 #include "common/geom.h"
@@ -30,6 +31,15 @@ static void pull_all(L1L2Stab *stab, Trial *trial)
         trial->pulled++;
 }
 
+static L1L2StabConfig config_of(const Trial *trial, int window)
+{
+    L1L2StabConfig cfg;
+    l1l2stab_config_init(&cfg, sizeof cfg);
+    cfg.format = L1L2STAB_FORMAT_GRAY8;
+    cfg.width = trial->width, cfg.height = trial->height, cfg.window = window;
+    return cfg;
+}
+
 static Trial *trial_new(const char *name, int window)
 {
     Trial *trial = calloc(1, sizeof *trial);
@@ -37,10 +47,7 @@ static Trial *trial_new(const char *name, int window)
     clip.noise = 5.0, clip.seed = 1;
     trial->clip = synth_hard_new(&clip);
     trial->width = clip.width, trial->height = clip.height;
-    L1L2StabConfig cfg;
-    l1l2stab_config_init(&cfg, sizeof cfg);
-    cfg.format = L1L2STAB_FORMAT_GRAY8;
-    cfg.width = clip.width, cfg.height = clip.height, cfg.window = window;
+    const L1L2StabConfig cfg = config_of(trial, window);
     L1L2Stab *stab;
     ck_assert_int_eq(l1l2stab_create(&stab, &cfg), L1L2STAB_OK);
     for (int t = 0; t < FRAMES; t++) {
@@ -132,6 +139,27 @@ START_TEST(two_blurred_frames_in_a_row_are_bridged)
 }
 END_TEST
 
+/* A bridge changes motions of frames that are held. The path has to be the one that the final motions give. */
+START_TEST(the_path_is_that_of_the_changed_motions_bit_by_bit)
+{
+    Trial *trial = trial_new("blur of 2 frames", 30);
+    L1L2StabConfig cfg = config_of(trial, 30);
+    L1L2Stab *stab;
+    ck_assert_int_eq(l1l2stab_create(&stab, &cfg), L1L2STAB_OK);
+    int pulled = 0;
+    for (int t = 0; t <= FRAMES; t++) {
+        const L1L2StabFrame frame = {.motion = trial->info[t < FRAMES ? t : 0].F};
+        L1L2StabInfo info;
+        ck_assert_int_eq(t < FRAMES ? l1l2stab_push(stab, &frame) : l1l2stab_finish(stab), L1L2STAB_OK);
+        for (; l1l2stab_pull(stab, NULL, &info) == L1L2STAB_OK; pulled++)
+            ck_assert_mem_eq(info.B, trial->info[pulled].B, sizeof info.B);
+    }
+    ck_assert_int_eq(pulled, FRAMES);
+    l1l2stab_free(&stab);
+    trial_free(trial);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("bridges");
@@ -139,6 +167,7 @@ int main(void)
     tcase_set_timeout(tc, 60);
     tcase_add_test(tc, a_blurred_frame_leaves_no_step_in_the_path);
     tcase_add_test(tc, the_path_behind_a_gap_is_right_with_the_shortest_window_too);
+    tcase_add_test(tc, the_path_is_that_of_the_changed_motions_bit_by_bit);
     tcase_add_test(tc, two_blurred_frames_in_a_row_are_bridged);
     suite_add_tcase(suite, tc);
     return checkx_run(suite);

@@ -95,8 +95,8 @@ typedef struct L1L2AlignmentCheck {
                               * better than the other of the two */
 } L1L2AlignmentCheck;
 
-/* Compares F with what a few steps of refinement make of it and of `expected`, at level 0 of small pictures: a twentieth
- * of the time that an alignment takes. */
+/* Compares F with what a few steps of refinement make of it and of `expected`, at level 0. With small pictures that
+ * takes a small part of an alignment's time. */
 void l1l2_motion_align_check(L1L2DirectAlignment *d, const L1L2FloatPyramid *now, const L1L2FloatPyramid *other,
                              const L1L2Mat *F, const L1L2Mat *expected, L1L2Mask mask, L1L2AlignmentCheck *out);
 

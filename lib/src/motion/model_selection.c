@@ -168,9 +168,9 @@ static double find_rival(const L1L2ModelSelection *s, const L1L2TrackSet *tracks
 }
 
 /* The part of the weight that agrees, less what a rival has. It is found with and without the tracks' history, and the
- * lower value counts, because history would confirm a mistake. A rival that was seen a while ago still counts for a part:
- * two motions look like one while they are close to each other. ambiguous: even with history the motion is as likely a
- * subject's as the background's. */
+ * lower value counts, because history would confirm a mistake. A rival that was seen a while ago still counts in
+ * part: two motions look like one while they are close to each other. ambiguous: even with history the motion is as
+ * likely a subject's as the background's. */
 static double find_quality(L1L2ModelSelection *s, const L1L2TrackWeights *w, const L1L2TrackSet *tracks,
                            const Candidate *c, bool *ambiguous)
 {

@@ -23,6 +23,12 @@ enum { MAX_POINTS = L1L2_RANSAC_MAX_PAIRS, OVERLAY_LEVEL = 1 };
 /* The least distance of points in tiny pictures: corners are found by windows of 3x3 pixels. */
 static const double min_distance_px = 3.0;
 
+/* The tracks are contradicted if another motion fits clearly better in this part of the cells with detail, and theirs
+ * in no more than that part. Half and twice of either changes no film with text. */
+static const double min_against = 0.25, max_support = 0.2;
+/* After it, motions that repeat are contradicted without a look: what was burnt in stays for a while. */
+static const int contradiction_frames = 60;
+
 struct L1L2Motion {
     L1L2MotionConfig cfg;
     L1L2Vision *vision;
@@ -381,10 +387,10 @@ static Doubt find_doubt(L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2Sel
         return IN_DOUBT;
     if (!repeats(m, &selected->F))
         return SURE;
-    if (m->since_contradiction <= 60)
+    if (m->since_contradiction <= contradiction_frames)
         return CONTRADICTED;
     l1l2_motion_whole_picture_check(m->whole, &selected->F, expected, l1l2_motion_overlay_mask(&m->overlay), &check);
-    return check.against >= p->align_min_against && check.support <= p->align_max_support ? CONTRADICTED : SURE;
+    return check.against >= min_against && check.support <= max_support ? CONTRADICTED : SURE;
 }
 
 /* Measures the motion of a frame from whole pictures, if the tracks leave it in doubt. It replaces the motion of the
@@ -415,8 +421,8 @@ static void align_pictures(L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2
                                                           p->align_max_quality));
 }
 
-/* Two motions have about equal weight, and whole pictures do not tell either. Many tracks are never given up: one of the
- * two is right, and the tracks' history says which is the likelier. */
+/* Two motions have about equal weight, and whole pictures do not tell either. Many tracks are never given up: one of
+ * the two is right, and the tracks' history says which is likelier. */
 static void follow_history(L1L2Motion *m, const L1L2TrackSet *tracks, L1L2SelectedModel *selected)
 {
     if (selected->source != L1L2STAB_MOTION_SOURCE_NONE || !selected->ambiguous ||
@@ -441,9 +447,8 @@ static bool align_with_reference(L1L2Motion *m, L1L2Mat *G)
     return true;
 }
 
-/* Opens a gap at a frame whose tracks yielded no motion, if those of the frame before did. In a gap, measures the motion to the picture before it, and
- * makes the motions of the frames between, and of this one, agree with that. The gap ends when a picture is sharp
- * again. */
+/* Opens a gap at a frame whose tracks yielded no motion, if those of the frame before did. When a picture is sharp
+ * again, measures its motion to the picture before the gap, and makes the motions of all frames since agree with it. */
 static void bridge(L1L2Motion *m, bool tracked, L1L2SelectedModel *selected, L1L2MotionResult *out)
 {
     const bool measured = selected->source != L1L2STAB_MOTION_SOURCE_NONE, opens = m->gap.frames == 0;

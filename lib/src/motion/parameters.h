@@ -91,25 +91,22 @@
     ROW(min_quality, 0.12, "[0, 1]", "below it neither of two motions is followed", \
         "test_model_selection: two motions of equal weight have less; sweep: same") \
     ROW(many_tracks, 80, "tracks", "with so many, the likelier of two motions is followed", \
-        "TODO") \
+        "a walk down steps: 174 sharp tracks were given up, which left a step of 20 px") \
     ROW(full_coverage, 0.3, "of the cells", "with inliers in them the frame counts as covered", \
         "MediaPipe's 30 %") \
     /* Whole pictures: motion.c, whole_picture.c */ \
     ROW(align_max_quality, 0.4, "[0, 1]", "of a motion from whole pictures", \
         "test_motion_movers: a subject on 60 % must not be followed with confidence") \
-    ROW(align_below_quality, 0.4, "[0, 1]", "of the tracks' motion: below it whole pictures are asked, too", \
-        "TODO") \
+    ROW(align_below_quality, 0.4, "[0, 1]", "of the tracks' motion: below it whole pictures are asked", \
+        "blurred pan: jitter 2.0 px without, 1.5 with; staying with whole pictures up to 0.7 is no better") \
     ROW(align_max_inlier_share, 0.7, "of the tracks", "that agree: with more, whole pictures are not asked", \
-        "TODO") \
+        "whole pictures in every frame: two walks 0.31 to 0.54 and 0.64 to 0.83 px of jitter") \
     ROW(align_better, 0.97, "of the difference", "that the tracks' motion leaves: whole pictures have to beat it", \
-        "TODO") \
+        "blurred pan, a run: jitter 1.41, 0.60 px; at 0.9 1.65, 0.64, at 1 1.41, 0.66") \
     ROW(contradicted_better, 0.85, "of the difference", "ditto, where the tracks may be on an overlay", \
-        "TODO") \
-    ROW(uniform_motion, 0.2, "threshold", "x", "TODO") \
-    ROW(align_min_against, 0.25, "of the cells", "that fit another motion clearly better: the tracks are contradicted", \
-        "TODO") \
-    ROW(align_max_support, 0.2, "of the cells", "that fit the tracks' motion clearly better: else they are not", \
-        "TODO") \
+        "24 texts over a film: 0.40 px off; at 0.7 0.46, at 0.95 same; mover and tripod: shakes at 0.97") \
+    ROW(uniform_motion, 0.2, "threshold", "a motion that repeats changes by less", \
+        "24 texts over a film: half same, double 0.38 in place of 0.40 px") \
     ROW(align_max_gain, 0.4, "log ratio", "of contrast between two whole pictures: else one is covered", \
         "test_never_worse: lens covered 2 s") \
     /* Noise: model_selection.c */ \
@@ -136,12 +133,12 @@
         "sweep: half x0.98, double x1.10; most: mover on 60 %") \
     ROW(learning_rate, 0.15, "a frame", "of the cells' agreement", \
         "sweep: half x1.12, double x0.99; most: mover on 60 %") \
-    ROW(overlay_min_camera, 1, "px", "camera motion from which that is evidence of an overlay", \
-        "sweep: half x1.00, double x1.00; most: logo and timecode, dark") \
-    ROW(overlay_hits, 5, "frames", "in which a pixel stood still make an overlay of it", \
-        "TODO") \
+    ROW(overlay_min_camera, 0.5, "px", "camera motion from which that is evidence of an overlay", \
+        "24 texts over a film: half 0.39, double 0.58 px, against 0.40") \
+    ROW(overlay_hits, 3, "frames", "in which a pixel stood still make an overlay of it", \
+        "24 texts, 250 specks, credits: 0.35, 0.09, 0.33 px off; at 5 0.40, 0.12, 0.62; at 10 0.54, 0.17, 0.67") \
     ROW(overlay_noise, 4, "gray levels", "what stands still changes by less, what moves by more than twice of it", \
-        "TODO") \
+        "24 texts, 250 specks, credits: half 0.37, 0.12, 0.71 px, double 0.40, 0.16, 0.44, against 0.40, 0.12, 0.62") \
     /* Dissolves: shot_dissolve.c */ \
     ROW(dissolve_same_shot, 0.5, "correlation", "pictures that are more alike are of one shot", \
         "sweep: half x1.00, double same; most: dissolve of 10") \

@@ -6,8 +6,8 @@
 
 #include "common/mem.h"
 
-/* A place that moves with the camera outweighs two that stand still. Evidence above the most would be forgotten late. */
-enum { AGREEING = 1, MOST = 20 };
+/* Of a pixel's evidence: more would be forgotten late. */
+enum { MOST = 20 };
 
 bool l1l2_motion_overlay_init(L1L2StaticOverlay *o, int width, int height)
 {
@@ -67,12 +67,12 @@ static double mean_of(const L1L2GrayPicture *g)
     return (double)sum / (g->width * g->height);
 }
 
-/* Calls for each pixel whose place in the previous picture lies within it. apply: the scores are changed; else pixels
- * that stand still and those that move are counted. */
+/* Pixels that stand still, and that move. */
 typedef struct Survey {
     int still, moving;
 } Survey;
 
+/* Counts them, of the pixels that the previous picture shows too. apply: changes their evidence. */
 static Survey survey(L1L2StaticOverlay *o, const L1L2GrayPicture *now, const L1L2GrayPicture *previous,
                      const L1L2Mat *F, bool apply)
 {
@@ -98,7 +98,7 @@ static Survey survey(L1L2StaticOverlay *o, const L1L2GrayPicture *now, const L1L
             if (apply && told > 0 && *score < MOST)
                 ++*score;
             else if (apply && told < 0)
-                *score = *score > AGREEING ? (uint8_t)(*score - AGREEING) : 0;
+                *score -= *score > 0;
         }
     }
     return sum;
@@ -109,7 +109,7 @@ void l1l2_motion_overlay_learn(L1L2StaticOverlay *o, const L1L2GrayPicture *now,
                                const L1L2Mat *F)
 {
     const L1L2Mat identity = l1l2_mat_identity();
-    const double pixel = 2.0 * o->half_w / (4.0 * o->width); /* of the downscaled picture, about */
+    const double pixel = o->half_w / o->width; /* of the downscaled picture, which is twice as large */
     if (!o->score || l1l2_mat_corner_distance(F, &identity, o->half_w, o->half_h) <
                          o->parameters->overlay_min_camera * pixel)
         return;

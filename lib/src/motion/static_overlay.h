@@ -2,10 +2,10 @@
 /*
  * Static overlays: logos, burnt-in text and clocks, dirt on the lens, which stand still while the camera moves.
  *
- * Each pixel of a small picture collects evidence. Where the current picture looks like the previous one at the same
- * place, and unlike the previous one at the place from which the camera's motion would have brought it, something
- * stands still; where it is the other way round, the scene is seen. Flat places tell nothing. The places found are
- * excluded from corners, tracks and whole-picture alignment.
+ * Each pixel of the picture at half size collects evidence. Where the current picture looks like the previous one at
+ * the same place, and unlike the previous one at the place from which the camera's motion would have brought it,
+ * something stands still. Where it changed, the scene is seen. Flat places tell nothing. The places found are excluded
+ * from corners, tracks and whole-picture alignment.
  */
 #ifndef L1L2_MOTION_STATIC_OVERLAY_H
 #define L1L2_MOTION_STATIC_OVERLAY_H
@@ -19,28 +19,27 @@
 typedef struct L1L2StaticOverlay {
     const L1L2MotionParameters *parameters;
     double half_w, half_h; /* of the frame, diagonals */
-    int width, height;     /* of the small picture, pixels; 0: too small, there are no overlays */
+    int width, height;     /* of the pictures, pixels */
     uint8_t *score;        /* evidence of each pixel, row by row */
     uint8_t *covered;      /* 1: an overlay, or near one */
     bool any;              /* some pixel is covered */
     bool stale;            /* `covered` is older than `score` */
 } L1L2StaticOverlay;
 
-/* width, height: of the small pictures that l1l2_motion_overlay_learn() will be given, pixels; 0: it will be given none.
- * False: out of memory. */
+/* width, height: of the pictures that l1l2_motion_overlay_learn() will be given, pixels. False: out of memory. */
 bool l1l2_motion_overlay_init(L1L2StaticOverlay *o, int width, int height);
 void l1l2_motion_overlay_clear(L1L2StaticOverlay *o);
 
 void l1l2_motion_overlay_reset(L1L2StaticOverlay *o);
 
-/* Learns from two small pictures and the camera's motion F from the current one to the previous one. */
+/* Learns from two pictures and the camera's motion F from the current one to the previous one. */
 void l1l2_motion_overlay_learn(L1L2StaticOverlay *o, const L1L2GrayPicture *now, const L1L2GrayPicture *previous,
                                const L1L2Mat *F);
 
 /* True if p lies on an overlay. */
 bool l1l2_motion_overlay_covers(L1L2StaticOverlay *o, L1L2Point p);
 
-/* The covered pixels of the small picture. blocked is NULL if there are none. Valid until o is changed. */
+/* The covered pixels. blocked is NULL if there are none. Valid until o is changed. */
 L1L2Mask l1l2_motion_overlay_mask(L1L2StaticOverlay *o);
 
 /* Lets the evidence age, by one selection of corners. Where nothing is seen that tells, an overlay is forgotten after

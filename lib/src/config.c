@@ -36,6 +36,7 @@ void l1l2stab_config_init(L1L2StabConfig *cfg, size_t struct_size)
         .motion_model = L1L2STAB_MOTION_MODEL_SIMILARITY,
         .rolling_shutter = L1L2STAB_ROLLING_SHUTTER_MIXTURE,
         .pixel_aspect = 1.0,
+        .region = {0.0, 0.0, 1.0, 1.0},
     };
     if (!cfg || struct_size < sizeof cfg->struct_size)
         return;
@@ -84,6 +85,33 @@ bool l1l2_config_check_live(const L1L2StabConfig *cfg)
     return in_range(cfg, "lambda", cfg->lambda, 0, 1000) && in_range(cfg, "crop_ratio", cfg->crop_ratio, 0.5, 0.99);
 }
 
+static bool region_fits(const L1L2StabConfig *cfg)
+{
+    const double *r = cfg->region, least = 1.0 / 8.0, rounding = 1e-9;
+    if (r[0] >= 0.0 && r[1] >= 0.0 && r[2] >= least - rounding && r[3] >= least - rounding &&
+        r[0] + r[2] <= 1.0 + rounding && r[1] + r[3] <= 1.0 + rounding) /* false for NaN */
+        return true;
+    l1l2_log(&cfg->logger, L1L2STAB_LOG_ERROR,
+             "region is %g, %g, %g, %g: give x, y, width and height in parts of the frame's sides, within the frame, and "
+             "width and height at least 1/8",
+             r[0], r[1], r[2], r[3]);
+    return false;
+}
+
+static bool mask_fits(const L1L2StabConfig *cfg)
+{
+    if (!cfg->mask)
+        return true;
+    if (!in_range(cfg, "mask_width", cfg->mask_width, 1, 16384) ||
+        !in_range(cfg, "mask_height", cfg->mask_height, 1, 16384))
+        return false;
+    if (cfg->mask_stride >= cfg->mask_width)
+        return true;
+    l1l2_log(&cfg->logger, L1L2STAB_LOG_ERROR, "mask_stride is %td: it must be at least mask_width, which is %d",
+             cfg->mask_stride, cfg->mask_width);
+    return false;
+}
+
 /* Every range that does not depend on another field. What does depend is computed and checked after these. */
 static bool ranges_fit(const L1L2StabConfig *cfg)
 {
@@ -102,7 +130,8 @@ static bool ranges_fit(const L1L2StabConfig *cfg)
                     L1L2STAB_MOTION_MODEL_AFFINE) &&
            in_range(cfg, "rolling_shutter", cfg->rolling_shutter, L1L2STAB_ROLLING_SHUTTER_NONE,
                     L1L2STAB_ROLLING_SHUTTER_MIXTURE) &&
-           in_range(cfg, "pixel_aspect", cfg->pixel_aspect, 0.1, 10) && weights_fit(cfg);
+           in_range(cfg, "pixel_aspect", cfg->pixel_aspect, 0.1, 10) && weights_fit(cfg) && region_fits(cfg) &&
+           mask_fits(cfg);
 }
 
 /* Fields that the caller's config knows but this library does not: the logger is one that both know. */

@@ -54,6 +54,13 @@ static L1L2StabResult build(L1L2Stab *s)
     const L1L2StabConfig *cfg = &s->cfg;
     if (!s->pool || !l1l2_frame_queue_init(&s->queue, cfg->window))
         return L1L2STAB_ERR_NOMEM;
+    const L1L2MeasuredArea area = {
+        .region = {cfg->region[0], cfg->region[1], cfg->region[2], cfg->region[3]},
+        .mask = cfg->mask,
+        .mask_stride = cfg->mask_stride,
+        .mask_width = cfg->mask_width,
+        .mask_height = cfg->mask_height,
+    };
     const L1L2MotionConfig motion = {
         .format = s->format,
         .width = cfg->width,
@@ -63,6 +70,7 @@ static L1L2StabResult build(L1L2Stab *s)
         .rolling_shutter = cfg->rolling_shutter,
         .seed = cfg->seed,
         .pixel_aspect = cfg->pixel_aspect,
+        .area = &area,
         .log = &cfg->logger,
     };
     const L1L2PathConfig path = {
@@ -130,6 +138,7 @@ L1L2StabResult l1l2stab_create(L1L2Stab **out, const L1L2StabConfig *cfg)
     s->bypass.length = L1L2STAB_BYPASS_FRAMES;
     l1l2_config_output_size(&resolved, &s->out_width, &s->out_height);
     result = build(s);
+    s->cfg.mask = NULL; /* the caller's, who may free it now */
     if (result != L1L2STAB_OK) {
         l1l2_log(&resolved.logger, L1L2STAB_LOG_ERROR, "create: %s", l1l2stab_strerror(result));
         l1l2stab_free(&s);

@@ -14,6 +14,8 @@ static void remember(void *cookie, L1L2StabLogLevel level, const char *message)
     snprintf(last_message, sizeof last_message, "%s", message);
 }
 
+static const uint8_t one_mask[8] = {1, 1, 1, 1, 1, 1, 0, 0};
+
 static L1L2StabConfig valid_config(void)
 {
     L1L2StabConfig cfg;
@@ -22,6 +24,9 @@ static L1L2StabConfig valid_config(void)
     cfg.width = 640;
     cfg.height = 360;
     cfg.logger.write = remember;
+    cfg.mask = one_mask;
+    cfg.mask_stride = cfg.mask_width = 8;
+    cfg.mask_height = 1;
     return cfg;
 }
 
@@ -103,6 +108,36 @@ START_TEST(every_field_out_of_range_is_refused_by_name)
     REFUSED(pixel_aspect, 0.0);
     REFUSED(pixel_aspect, 10.1);
     REFUSED(pixel_aspect, NAN);
+    REFUSED(mask_width, 0);
+    REFUSED(mask_width, 16385);
+    REFUSED(mask_height, -3);
+    REFUSED(mask_height, 16385);
+    REFUSED(mask_stride, 7);
+    REFUSED(mask_stride, -8);
+}
+END_TEST
+
+START_TEST(a_region_that_is_not_part_of_the_frame_is_refused_with_its_numbers)
+{
+    static const double bad[][4] = {
+        {-0.1, 0.0, 0.5, 0.5}, {0.0, -1e-6, 0.5, 0.5}, {0.0, 0.0, 0.12, 1.0}, {0.0, 0.0, 1.0, 0.1}, {0.0, 0.0, 0.0, 0.0},
+        {0.6, 0.0, 0.5, 1.0},  {0.0, 0.9, 1.0, 0.2},   {NAN, 0.0, 1.0, 1.0},  {0.0, 0.0, NAN, 1.0}, {0.0, 0.0, 1.0, NAN},
+        {0.0, 0.0, 1e300, 1.0}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        L1L2StabConfig cfg = valid_config();
+        memcpy(cfg.region, bad[i], sizeof bad[i]);
+        last_message[0] = '\0';
+        ck_assert_int_eq(l1l2stab_config_delay(&cfg), L1L2STAB_ERR_ARGUMENT);
+        char number[32];
+        snprintf(number, sizeof number, "%g", bad[i][2]);
+        ck_assert_msg(strstr(last_message, "region is") && strstr(last_message, number), "\"%s\"", last_message);
+    }
+    static const double good[][4] = {{0.0, 0.0, 1.0, 1.0}, {0.1 + 0.2, 0.0, 0.7, 1.0}, {0.875, 0.875, 0.125, 0.125}};
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        L1L2StabConfig cfg = valid_config();
+        memcpy(cfg.region, good[i], sizeof good[i]);
+        ck_assert_int_eq(l1l2stab_config_delay(&cfg), 150);
+    }
 }
 END_TEST
 
@@ -146,6 +181,13 @@ START_TEST(a_config_from_an_older_header_gets_defaults_for_what_it_lacks)
     ck_assert_int_eq(l1l2_config_resolve(&cfg, &resolved), L1L2STAB_OK);
     ck_assert_int_eq(resolved.threads, 0);
     ck_assert_ptr_null(resolved.logger.write);
+    cfg = valid_config();
+    cfg.struct_size = offsetof(L1L2StabConfig, region); /* what a program of version 0.1 or 0.2 has */
+    memset(cfg.region, 0xff, sizeof cfg - offsetof(L1L2StabConfig, region));
+    ck_assert_int_eq(l1l2_config_resolve(&cfg, &resolved), L1L2STAB_OK);
+    ck_assert(resolved.region[0] == 0.0 && resolved.region[1] == 0.0);
+    ck_assert(resolved.region[2] == 1.0 && resolved.region[3] == 1.0);
+    ck_assert_ptr_null(resolved.mask);
 }
 END_TEST
 
@@ -192,6 +234,7 @@ int main(void)
     tcase_add_test(tcase, the_defaults_need_format_and_size_alone);
     tcase_add_test(tcase, overlap_zero_is_chosen_by_join_and_fits_every_window);
     tcase_add_test(tcase, every_field_out_of_range_is_refused_by_name);
+    tcase_add_test(tcase, a_region_that_is_not_part_of_the_frame_is_refused_with_its_numbers);
     tcase_add_test(tcase, blend_wants_twice_the_overlap_in_the_window);
     tcase_add_test(tcase, the_output_size_follows_the_crop);
     tcase_add_test(tcase, a_config_from_an_older_header_gets_defaults_for_what_it_lacks);

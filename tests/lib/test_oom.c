@@ -38,6 +38,7 @@ static L1L2StabConfig small_config(void)
     cfg.width = 160, cfg.height = 96;
     cfg.window = 8;
     cfg.threads = 2;
+    cfg.region[2] = 0.75; /* it takes memory */
     return cfg;
 }
 

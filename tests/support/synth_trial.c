@@ -55,7 +55,7 @@ static double acceleration(const SynthConfig *cfg, const double A[9], const doub
     return sum;
 }
 
-static L1L2Stab *stabilizer_new(const SynthConfig *cfg, L1L2StabFormat format)
+static L1L2Stab *stabilizer_new(const SynthConfig *cfg, L1L2StabFormat format, SynthTrialSetting set)
 {
     L1L2StabConfig config;
     l1l2stab_config_init(&config, sizeof config);
@@ -64,6 +64,8 @@ static L1L2Stab *stabilizer_new(const SynthConfig *cfg, L1L2StabFormat format)
     config.height = cfg->height;
     config.frame_rate = cfg->fps;
     config.threads = 1;
+    if (set)
+        set(&config);
     L1L2Stab *stab;
     if (l1l2stab_create(&stab, &config) != L1L2STAB_OK)
         abort();
@@ -154,13 +156,18 @@ SynthTrial synth_trial_new(const SynthConfig *cfg, int frames)
 
 SynthTrial synth_trial_in(const SynthConfig *cfg, int frames, L1L2StabFormat format)
 {
+    return synth_trial_with(cfg, frames, format, NULL);
+}
+
+SynthTrial synth_trial_with(const SynthConfig *cfg, int frames, L1L2StabFormat format, SynthTrialSetting set)
+{
     SynthTrial trial = {.frames = frames};
     trial.info = synth_alloc((size_t)frames + 1, sizeof *trial.info);
     trial.error = synth_alloc((size_t)frames, sizeof *trial.error);
     trial.bias = synth_alloc((size_t)frames, sizeof *trial.bias);
     trial.contrast = synth_alloc((size_t)frames, sizeof *trial.contrast);
     Synth *synth = synth_new(cfg);
-    L1L2Stab *stab = stabilizer_new(cfg, format);
+    L1L2Stab *stab = stabilizer_new(cfg, format, set);
     int got = 0;
     for (int t = 0; t < frames; t++) {
         push(stab, synth, cfg, format, t);

@@ -26,6 +26,11 @@ typedef struct SynthTrial {
  * memory. */
 SynthTrial synth_trial_new(const SynthConfig *cfg, int frames);
 SynthTrial synth_trial_in(const SynthConfig *cfg, int frames, L1L2StabFormat format);
+
+/* The same with another config: `set` changes it. What it points to need only live during the call. */
+typedef void (*SynthTrialSetting)(L1L2StabConfig *config);
+SynthTrial synth_trial_with(const SynthConfig *cfg, int frames, L1L2StabFormat format, SynthTrialSetting set);
+
 void synth_trial_free(SynthTrial *trial);
 
 /* The distance between a frame's corners as moved by A and as moved by B: rms, px. */

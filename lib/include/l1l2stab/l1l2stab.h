@@ -238,6 +238,15 @@ typedef struct L1L2StabConfig {
     L1L2StabMotionModel motion_model; /* default SIMILARITY */
     L1L2StabRollingShutter rolling_shutter; /* default MIXTURE */
     double pixel_aspect;           /* a pixel's width by its height as it is shown, [0.1, 10], default 1 */
+    /* What is measured: the camera's motion is taken from the region, without what the mask excludes. The whole picture
+     * is still stabilized, and cuts and dissolves are still found in the whole picture. At least 1 % of the frame has
+     * to be left; only what is left decides, so it should show the background. */
+    double region[4];              /* x, y, width, height: of the part that is measured, in parts of the frame's width
+                                    * and height. Within the frame, at least 1/8 wide and high; default 0, 0, 1, 1 */
+    const uint8_t *mask;           /* scaled to the frame; 0: not measured there, any other value: measured. Read during
+                                    * l1l2stab_create() only. NULL: no mask, the default */
+    ptrdiff_t mask_stride;         /* bytes from a row to the next, at least mask_width; of the mask, if there is one */
+    int mask_width, mask_height;   /* pixels, [1, 16384]; ditto. Any size and aspect: it covers the whole frame */
 } L1L2StabConfig;
 
 /* A new path starts at this frame: no frame before it belongs to the same shot. */

@@ -199,7 +199,7 @@ static double find_quality(L1L2ModelSelection *s, const L1L2TrackWeights *w, con
     }
     least = fmin(least, share * (1.0 - s->rivalry));
     const double coverage = l1l2_fit_coverage(w->half_w, w->half_h, tracks->pairs, c->inlier, count);
-    return least * fmin(1.0, coverage / p->full_coverage);
+    return least * fmin(1.0, coverage / (p->full_coverage * s->measured_share));
 }
 
 /* ---- The core: is one of two close motions the background's? ---- */

@@ -10,7 +10,7 @@
  * from frame to frame.
  *
  * Quality, [0, 1]: the part of the consensus weight that agrees. It is less if another motion has much weight too, if
- * the inliers cover little of the frame, and if the tracks are noisy. If two motions have about equal weight, neither
+ * the inliers cover little of what is measured, and if the tracks are noisy. If two motions have about equal weight, neither
  * is followed.
  */
 #ifndef L1L2_MOTION_MODEL_SELECTION_H
@@ -24,6 +24,7 @@ typedef struct L1L2ModelSelection {
     const L1L2MotionParameters *parameters;
     L1L2StabMotionModel highest; /* that is fitted: similarity or affine */
     double threshold;            /* of the inliers, in the pairs' unit */
+    double measured_share;       /* part of the frame that is measured, (0, 1]: inliers cannot cover more of it */
     L1L2StabMotionModel current; /* selected last */
     int acceptable_frames;       /* in a row, in which a higher model than the current one was acceptable */
     L1L2Mat last;                /* the last measured motion, decaying while it is used as the prediction */

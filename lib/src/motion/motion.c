@@ -84,10 +84,35 @@ static void configure(L1L2Motion *m)
      * would fit one part of the picture in one frame and another part in the next. The result is reduced in the end. */
     const bool translation = m->cfg.model == L1L2STAB_MOTION_MODEL_TRANSLATION;
     m->selection = (L1L2ModelSelection){.parameters = p,
+                                        .measured_share = 1.0,
                                         .highest = translation ? L1L2STAB_MOTION_MODEL_SIMILARITY : m->cfg.model,
                                         .threshold = p->inlier_distance * pixel};
-    const double grid_px = sqrt((double)m->width * m->height / p->max_points);
+}
+
+/* share: the part of the frame that is measured. Points lie closer where there is less room for them. */
+static void adapt_to_area(L1L2Motion *m, double share)
+{
+    const L1L2MotionParameters *p = m->cfg.parameters;
+    const double grid_px = sqrt((double)m->width * m->height * share / p->max_points);
     m->distance_px = fmin(fmax(p->point_grid * grid_px, min_distance_px), p->point_distance);
+    m->selection.measured_share = share;
+}
+
+/* Excludes what the caller does not want to be measured. */
+static L1L2StabResult set_area(L1L2Motion *m, const L1L2MeasuredArea *area)
+{
+    double share = 1.0;
+    if (area && !l1l2_motion_area_is_whole(area) && !l1l2_motion_overlay_exclude(&m->overlay, area, &share))
+        return L1L2STAB_ERR_NOMEM;
+    if (share < l1l2_motion_area_least) {
+        l1l2_log(m->cfg.log, L1L2STAB_LOG_ERROR,
+                 "region and mask leave %.2g %% of the frame to be measured: at least %g %% is needed, so choose a larger "
+                 "region, or exclude less by the mask (where it is 0, nothing is measured)",
+                 100.0 * share, 100.0 * l1l2_motion_area_least);
+        return L1L2STAB_ERR_ARGUMENT;
+    }
+    adapt_to_area(m, share);
+    return L1L2STAB_OK;
 }
 
 /* The current or the previous picture at the sizes that whole_picture.h wants. */
@@ -114,7 +139,7 @@ L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
         .parameters = m->cfg.parameters,
         .log = cfg->log,
     };
-    const L1L2StabResult result = l1l2_vision_create(&m->vision, &vision);
+    L1L2StabResult result = l1l2_vision_create(&m->vision, &vision);
     if (result != L1L2STAB_OK) {
         l1l2_motion_free(m);
         return result;
@@ -128,9 +153,12 @@ L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
         return L1L2STAB_ERR_NOMEM;
     }
     const L1L2GrayPicture overlay = l1l2_vision_picture(m->vision, false, OVERLAY_LEVEL);
-    if (!l1l2_motion_overlay_init(&m->overlay, overlay.width, overlay.height)) {
+    result = l1l2_motion_overlay_init(&m->overlay, overlay.width, overlay.height) ? set_area(m, cfg->area)
+                                                                                 : L1L2STAB_ERR_NOMEM;
+    m->cfg.area = NULL; /* the caller's */
+    if (result != L1L2STAB_OK) {
         l1l2_motion_free(m);
-        return L1L2STAB_ERR_NOMEM;
+        return result;
     }
     l1l2_motion_reset(m);
     *out = m;
@@ -183,7 +211,7 @@ static L1L2Point to_diagonals(const L1L2Motion *m, L1L2Pixel p)
                        ((p.y + 0.5) * m->cfg.height / m->height - 0.5 * m->cfg.height) / m->diagonal_px};
 }
 
-/* Selects new corners if that is due, where there is no static overlay. */
+/* Selects new corners if that is due, where nothing is excluded. */
 static L1L2StabResult select_corners(L1L2Motion *m)
 {
     const L1L2MotionParameters *p = m->cfg.parameters;

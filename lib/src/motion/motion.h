@@ -17,6 +17,7 @@
 
 #include "common/geom.h"
 #include "image/format.h"
+#include "motion/measured_area.h"
 #include "motion/motion_bridge.h"
 #include "motion/parameters.h"
 #include "rolling_shutter/model.h"
@@ -32,6 +33,7 @@ typedef struct L1L2MotionConfig {
     const L1L2StabLogger *log; /* must outlive the object */
     L1L2StabRollingShutter rolling_shutter; /* model of the residual that F_t leaves; NONE: it is not fitted */
     double pixel_aspect;       /* a pixel's width by its height; 0: 1 */
+    const L1L2MeasuredArea *area; /* that is measured; NULL: the whole frame. Read by create() only */
     const L1L2MotionParameters *parameters; /* must outlive the object; NULL: l1l2_motion_defaults */
 } L1L2MotionConfig;
 
@@ -47,7 +49,7 @@ typedef struct L1L2MotionResult {
     int64_t scale_ns, track_ns, fit_ns;
 } L1L2MotionResult;
 
-/* On error *out is NULL. */
+/* On error *out is NULL. ERR_ARGUMENT: the area is too small; the reason was logged. */
 L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg);
 void l1l2_motion_free(L1L2Motion *m);
 

@@ -24,13 +24,25 @@ void l1l2_motion_overlay_clear(L1L2StaticOverlay *o)
 {
     l1l2_mem_free(o->score);
     l1l2_mem_free(o->covered);
-    o->score = o->covered = NULL;
+    l1l2_mem_free(o->excluded);
+    o->score = o->covered = o->excluded = NULL;
+}
+
+bool l1l2_motion_overlay_exclude(L1L2StaticOverlay *o, const L1L2MeasuredArea *area, double *share)
+{
+    o->excluded = l1l2_mem_new((size_t)o->width * (size_t)o->height, sizeof *o->excluded);
+    if (!o->excluded)
+        return false;
+    *share = l1l2_motion_area_mark(area, o->excluded, o->width, o->height);
+    o->stale = true;
+    return true;
 }
 
 void l1l2_motion_overlay_reset(L1L2StaticOverlay *o)
 {
     const size_t pixels = (size_t)o->width * (size_t)o->height;
-    o->any = o->stale = false;
+    o->any = false;
+    o->stale = o->excluded != NULL;
     if (pixels == 0)
         return;
     memset(o->score, 0, pixels);
@@ -85,8 +97,11 @@ static Survey survey(L1L2StaticOverlay *o, const L1L2GrayPicture *now, const L1L
         const float v0 = (float)((F->m[3] * x0 + F->m[4] * py + F->m[5] + o->half_h) / unit_y - 0.5);
         const float du = (float)F->m[0], dv = (float)(F->m[3] * unit_x / unit_y);
         const ptrdiff_t row = (ptrdiff_t)y * o->width;
+        const uint8_t *excluded = o->excluded ? o->excluded + row : NULL;
         for (int x = 0; x < o->width; x++) {
             const float u = u0 + (float)x * du, v = v0 + (float)x * dv;
+            if (excluded && excluded[x])
+                continue;
             if (!(u >= 0.0f && v >= 0.0f && u < (float)(o->width - 1) && v < (float)(o->height - 1)))
                 continue;
             const int told = evidence(o->parameters, (float)now->data[y * now->stride + x],
@@ -125,12 +140,17 @@ static int least_of(int a, int b)
     return a < b ? a : b;
 }
 
-/* Marks what has enough evidence, and its surroundings: a tracking window reaches as far. */
+/* Marks what is excluded, and what has enough evidence and its surroundings: a tracking window reaches as far. */
 static void update(L1L2StaticOverlay *o)
 {
     enum { REACH = 1 };
-    o->stale = o->any = false;
-    memset(o->covered, 0, (size_t)o->width * (size_t)o->height);
+    const size_t pixels = (size_t)o->width * (size_t)o->height;
+    o->stale = false;
+    o->any = o->excluded != NULL;
+    if (o->excluded)
+        memcpy(o->covered, o->excluded, pixels);
+    else
+        memset(o->covered, 0, pixels);
     for (int y = 0; y < o->height; y++)
         for (int x = 0; x < o->width; x++) {
             if (o->score[y * o->width + x] < o->parameters->overlay_hits)

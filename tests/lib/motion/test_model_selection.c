@@ -46,7 +46,7 @@ static void setup(void)
 static L1L2ModelSelection selection_new(L1L2StabMotionModel highest)
 {
     L1L2ModelSelection l = {
-        .parameters = &l1l2_motion_defaults, .highest = highest, .threshold = threshold};
+        .parameters = &l1l2_motion_defaults, .highest = highest, .threshold = threshold, .measured_share = 1.0};
     l1l2_motion_model_reset(&l);
     return l;
 }

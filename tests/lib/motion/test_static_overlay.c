@@ -119,6 +119,50 @@ START_TEST(nothing_is_an_overlay_while_the_camera_stands_or_if_most_of_the_pictu
 }
 END_TEST
 
+START_TEST(what_the_caller_excludes_is_covered_for_good)
+{
+    Overlay t = overlay_new();
+    const L1L2MeasuredArea left_half = {.region = {0.0, 0.0, 0.5, 1.0}};
+    double share;
+    ck_assert(l1l2_motion_overlay_exclude(&t.o, &left_half, &share));
+    ck_assert_near(share, 0.5, 1e-12);
+    for (int round = 0; round < 2; round++) {
+        for (int i = 0; i < 100; i++)
+            l1l2_motion_overlay_age(&t.o);
+        ck_assert(l1l2_motion_overlay_covers(&t.o, t.in));
+        ck_assert(!l1l2_motion_overlay_covers(&t.o, t.out));
+        const L1L2Mask mask = l1l2_motion_overlay_mask(&t.o);
+        for (int i = 0; i < SMALL_W * SMALL_H; i++)
+            ck_assert_int_eq(mask.blocked[i], i % SMALL_W >= SMALL_W / 2);
+        learn(&t, 40, 2, false, &t.camera); /* the patch stands still there */
+        l1l2_motion_overlay_reset(&t.o);
+    }
+    l1l2_motion_overlay_clear(&t.o);
+}
+END_TEST
+
+START_TEST(what_is_excluded_does_not_decide_whether_most_of_the_picture_stands)
+{
+    Overlay t = overlay_new();
+    const double least_x = (PATCH_X - 10.0) / SMALL_W, least_y = (PATCH_Y - 8.0) / SMALL_H;
+    const L1L2MeasuredArea around = {.region = {least_x, least_y, 40.0 / SMALL_W, 36.0 / SMALL_H}};
+    double share;
+    ck_assert(l1l2_motion_overlay_exclude(&t.o, &around, &share));
+    for (int shift = 2; shift <= 80; shift += 2) {
+        uint8_t now[SMALL_W * SMALL_H], previous[SMALL_W * SMALL_H];
+        const L1L2GrayPicture a = {now, SMALL_W, SMALL_W, SMALL_H}, b = {previous, SMALL_W, SMALL_W, SMALL_H};
+        draw(now, shift, false);
+        draw(previous, shift - 2, false);
+        for (int i = 0; i < SMALL_W * SMALL_H; i++)
+            if (l1l2_motion_overlay_mask(&t.o).blocked[i] && i % SMALL_W < PATCH_X - 10)
+                now[i] = previous[i] = (uint8_t)((unsigned)i * 2654435761u >> 24); /* a car's hood */
+        l1l2_motion_overlay_learn(&t.o, &a, &b, &t.camera);
+    }
+    ck_assert(l1l2_motion_overlay_covers(&t.o, t.in)); /* the patch is an overlay on what is measured */
+    l1l2_motion_overlay_clear(&t.o);
+}
+END_TEST
+
 START_TEST(burnt_in_text_is_not_taken_for_a_dark_scene_that_stands_still)
 {
     static const double contrasts[] = {0.45, 0.15, 0.045}; /* of the scene's 256 levels */
@@ -157,6 +201,8 @@ int main(void)
     tcase_add_test(tcase, what_stands_still_while_the_camera_moves_is_covered_until_nothing_is_seen_of_it_for_long);
     tcase_add_test(tcase, an_overlay_that_goes_is_forgotten_at_once_where_the_scene_moves);
     tcase_add_test(tcase, nothing_is_an_overlay_while_the_camera_stands_or_if_most_of_the_picture_stands);
+    tcase_add_test(tcase, what_the_caller_excludes_is_covered_for_good);
+    tcase_add_test(tcase, what_is_excluded_does_not_decide_whether_most_of_the_picture_stands);
     tcase_add_test(tcase, burnt_in_text_is_not_taken_for_a_dark_scene_that_stands_still);
     suite_add_tcase(suite, tcase);
     return checkx_run(suite);

@@ -6,6 +6,7 @@
 #include <gst/video/video.h>
 
 #include "gstl1l2staballoc.h"
+#include "gstl1l2stabarea.h"
 #include "gstl1l2stabcaps.h"
 #include "gstl1l2stabcopymeta.h"
 #include "gstl1l2stabconvert.h"
@@ -23,6 +24,7 @@ struct _GstL1L2Stab
 
   GstL1L2StabSettings settings; /* has its own lock */
   GstL1L2StabFlow flow;         /* the frames between the pads */
+  GstL1L2StabArea area;         /* of the frames that is measured; open while the element is started */
 };
 
 G_DEFINE_TYPE (GstL1L2Stab, gst_l1l2_stab, GST_TYPE_BASE_TRANSFORM);
@@ -143,6 +145,9 @@ gst_l1l2_stab_set_caps (GstBaseTransform * trans, GstCaps * in_caps,
 
   gst_l1l2_stab_flow_drain (&self->flow);
   gst_l1l2_stab_settings_in_use (&self->settings, &settings);
+  if (!gst_l1l2_stab_area_apply (&self->area, GST_ELEMENT_CAST (self), &in_info,
+          &settings))
+    return FALSE;
   if (!gst_l1l2_stab_stream_open (&self->flow.stream, &settings, &in_info,
           &out_info))
     return FALSE;
@@ -189,6 +194,20 @@ gst_l1l2_stab_change_state (GstElement * element, GstStateChange transition)
 }
 
 static gboolean
+gst_l1l2_stab_open_area (GstL1L2Stab * self)
+{
+  gchar *region, *mask;
+  gboolean ok;
+
+  gst_l1l2_stab_settings_dup_area (&self->settings, &region, &mask);
+  ok = gst_l1l2_stab_area_open (&self->area, GST_ELEMENT_CAST (self), region,
+      mask);
+  g_free (region);
+  g_free (mask);
+  return ok;
+}
+
+static gboolean
 gst_l1l2_stab_open_files (GstL1L2Stab * self)
 {
   gchar *motion_in, *motion_out;
@@ -231,7 +250,8 @@ gst_l1l2_stab_start (GstBaseTransform * trans)
 
   gst_l1l2_stab_latency_set (&self->flow.latency, settings.window, NULL);
   gst_l1l2_stab_report_start (&self->flow.stream.report);
-  return gst_l1l2_stab_open_files (self);
+  /* Opening motion-out empties it, so it comes last. */
+  return gst_l1l2_stab_open_area (self) && gst_l1l2_stab_open_files (self);
 }
 
 static gboolean
@@ -240,6 +260,7 @@ gst_l1l2_stab_stop (GstBaseTransform * trans)
   GstL1L2Stab *self = GST_L1L2_STAB (trans);
 
   gst_l1l2_stab_flow_stop (&self->flow);
+  gst_l1l2_stab_area_close (&self->area);
   gst_l1l2_stab_settings_release (&self->settings);
   return TRUE;
 }
@@ -285,6 +306,7 @@ gst_l1l2_stab_finalize (GObject * object)
   GstL1L2Stab *self = GST_L1L2_STAB (object);
 
   gst_l1l2_stab_flow_clear (&self->flow);
+  gst_l1l2_stab_area_close (&self->area);
   gst_l1l2_stab_settings_clear (&self->settings);
   G_OBJECT_CLASS (gst_l1l2_stab_parent_class)->finalize (object);
 }

@@ -18,12 +18,14 @@ enum
   PROP_INTERPOLATION,
   PROP_OUTPUT_SIZE,
   PROP_THREADS,
+  PROP_REGION,
+  PROP_MASK,
   PROP_MOTION_IN,
   PROP_MOTION_OUT,
   PROP_POST_MESSAGES,
 };
 
-/* A change takes effect with the next caps, and for a file name when the element starts. So these are changed in
+/* A change takes effect with the next caps, and for a text or file name when the element starts. So these are changed in
  * READY. */
 #define SETTING_FLAGS \
   (G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY)
@@ -120,6 +122,22 @@ install_picture (GObjectClass * klass, const L1L2StabConfig * defaults)
 }
 
 static void
+install_area (GObjectClass * klass)
+{
+  g_object_class_install_property (klass, PROP_REGION,
+      g_param_spec_string ("region", "Region",
+          "Part of the frame in which the camera's motion is measured: "
+          "x,y,width,height in pixels of the incoming frame, or with % signs in "
+          "parts of it, such as 10%,0,80%,50%. It should show the background. "
+          "NULL = the whole frame", NULL, SETTING_FLAGS));
+  g_object_class_install_property (klass, PROP_MASK,
+      g_param_spec_string ("mask", "Mask",
+          "File of a gray picture, scaled to the frame: where it is darker than "
+          "middle gray, nothing is measured. A binary PGM (P5) of 8 or 16 bits. "
+          "NULL = no mask", NULL, SETTING_FLAGS));
+}
+
+static void
 install_files (GObjectClass * klass)
 {
   g_object_class_install_property (klass, PROP_MOTION_IN,
@@ -143,6 +161,7 @@ gst_l1l2_stab_settings_install (GObjectClass * klass)
   install_live (klass, &defaults);
   install_path (klass, &defaults);
   install_picture (klass, &defaults);
+  install_area (klass);
   install_files (klass);
   g_object_class_install_property (klass, PROP_STATS,
       g_param_spec_boxed ("stats", "Statistics",
@@ -172,6 +191,8 @@ gst_l1l2_stab_settings_clear (GstL1L2StabSettings * settings)
 {
   g_clear_pointer (&settings->motion_in, g_free);
   g_clear_pointer (&settings->motion_out, g_free);
+  g_clear_pointer (&settings->region, g_free);
+  g_clear_pointer (&settings->mask, g_free);
 }
 
 /* The field that the property sets. Its type is that of the property's values. NULL: no such property. */
@@ -203,6 +224,10 @@ find_field (GstL1L2StabSettings * settings, guint id)
       return &config->output_size;
     case PROP_THREADS:
       return &config->threads;
+    case PROP_REGION:
+      return &settings->region;
+    case PROP_MASK:
+      return &settings->mask;
     case PROP_MOTION_IN:
       return &settings->motion_in;
     case PROP_MOTION_OUT:
@@ -228,7 +253,7 @@ set_field (gpointer field, const GValue * value)
   } else if (G_VALUE_HOLDS_STRING (value)) {
     const gchar *name = g_value_get_string (value);
 
-    /* An empty name means no file. */
+    /* An empty text means none. */
     g_free (*(gchar **) field);
     *(gchar **) field = name && *name ? g_strdup (name) : NULL;
   } else {
@@ -376,5 +401,15 @@ gst_l1l2_stab_settings_dup_files (GstL1L2StabSettings * settings,
   GST_OBJECT_LOCK (settings->object);
   *motion_in = g_strdup (settings->motion_in);
   *motion_out = g_strdup (settings->motion_out);
+  GST_OBJECT_UNLOCK (settings->object);
+}
+
+void
+gst_l1l2_stab_settings_dup_area (GstL1L2StabSettings * settings,
+    gchar ** region, gchar ** mask)
+{
+  GST_OBJECT_LOCK (settings->object);
+  *region = g_strdup (settings->region);
+  *mask = g_strdup (settings->mask);
   GST_OBJECT_UNLOCK (settings->object);
 }

@@ -23,6 +23,8 @@ typedef struct
   gboolean bypass;
   gboolean post_messages;
   gchar *motion_in, *motion_out;        /* file names, or NULL */
+  gchar *region;                /* a text, or NULL */
+  gchar *mask;                  /* a file name, or NULL */
 } GstL1L2StabSettings;
 
 /* Installs the properties and registers their enumerations. */
@@ -60,9 +62,11 @@ gboolean gst_l1l2_stab_settings_sample_bypass (GstL1L2StabSettings * settings,
     GstClockTime stream_time);
 gboolean gst_l1l2_stab_settings_post_messages (GstL1L2StabSettings * settings);
 
-/* Copies of the file names, each to be freed or NULL. */
+/* Copies of the texts and file names, each to be freed or NULL. */
 void gst_l1l2_stab_settings_dup_files (GstL1L2StabSettings * settings,
     gchar ** motion_in, gchar ** motion_out);
+void gst_l1l2_stab_settings_dup_area (GstL1L2StabSettings * settings,
+    gchar ** region, gchar ** mask);
 
 G_END_DECLS
 

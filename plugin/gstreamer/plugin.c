@@ -28,6 +28,9 @@
  * element is started again, and so does the output size that crop-ratio gives
  * with output-size=crop.
  *
+ * #l1l2stab:region and #l1l2stab:mask say in which part of the frame the motion of
+ * the camera is measured. The whole picture is stabilized by it.
+ *
  * A discontinuity ends the path. In reverse playback it does not, because there
  * decoders mark every group of pictures as one.
  *
@@ -59,6 +62,10 @@
  * gst-launch-1.0 rtspsrc location=rtsp://camera/stream latency=200 ! decodebin ! l1l2stab window=30 ! \
  *   videoconvert ! autovideosink
  * ]| A network camera.
+ * |[
+ * gst-launch-1.0 filesrc location=in.mp4 ! decodebin ! l1l2stab region=0,0,100%,45% ! x264enc ! mp4mux ! \
+ *   filesink location=out.mp4
+ * ]| The motion is measured above the water.
  * |[
  * gst-launch-1.0 filesrc location=in.mp4 ! decodebin ! tee name=in \
  *   compositor name=both sink_1::xpos=320 ! x264enc ! mp4mux ! filesink location=out.mp4 \

@@ -32,6 +32,7 @@ folder = clip.folder()
 film = clip.make(folder / 'in.mp4', FRAMES, audio=True)
 clip.play(f'filesrc location={film} ! decodebin ! videoconvert ! video/x-raw,format=I420_10LE ! '
           f'x265enc speed-preset=ultrafast ! h265parse ! mp4mux ! filesink location={folder}/in-10bit.mp4')
+(folder / 'mask.pgm').write_bytes(b'P5 2 2 255\n\xff\xff\xff\x00')
 
 
 def serve_film():
@@ -107,6 +108,16 @@ class Documented(unittest.TestCase):
         self.assertNotRegex(said, r'WARN|Impossible|missing')
         if out.name in line:
             self.check_file(line, out)
+
+
+    @unittest.skipUnless((TOP / 'README.md').exists(), 'no README.md')
+    def test_the_table_of_properties_has_every_property(self):
+        table = re.findall(r'^\| (`[^|]*`) \|', (TOP / 'README.md').read_text(encoding='utf-8'), re.MULTILINE)
+        listed = {name for names in table for name in re.findall(r'`([a-z-]+)`', names)}
+        said = clip.run('gst-inspect-1.0', 'l1l2stab')
+        properties = set(re.findall(r'^  ([a-z-]+) +: ', said[said.index('Element Properties'):], re.MULTILINE))
+        self.assertIn('region', properties)
+        self.assertEqual(properties - {'name', 'parent', 'qos'}, listed)
 
 
 def add_tests(place):

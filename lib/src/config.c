@@ -92,8 +92,8 @@ static bool region_fits(const L1L2StabConfig *cfg)
         r[0] + r[2] <= 1.0 + rounding && r[1] + r[3] <= 1.0 + rounding) /* false for NaN */
         return true;
     l1l2_log(&cfg->logger, L1L2STAB_LOG_ERROR,
-             "region is %g, %g, %g, %g: give x, y, width and height in parts of the frame's sides, within the frame, and "
-             "width and height at least 1/8",
+             "region is %g, %g, %g, %g: give x, y, width and height in parts of the frame's sides, within the frame, "
+             "and width and height at least 1/8",
              r[0], r[1], r[2], r[3]);
     return false;
 }

@@ -56,8 +56,8 @@ read_mask (GstL1L2StabArea * area, GstElement * element, const gchar * name)
       break;
     case GST_L1L2_STAB_PGM_BAD:
       GST_ELEMENT_ERROR (element, RESOURCE, READ,
-          ("mask: %s %s. Write the mask as a binary PGM of 8 or 16 bits: white is measured, black is not.", name, fault),
-          (NULL));
+          ("mask: %s %s. Write the mask as a binary PGM of 8 or 16 bits: white is measured, black is not.", name,
+              fault), (NULL));
       break;
   }
   g_free (fault);
@@ -117,8 +117,8 @@ gst_l1l2_stab_area_apply (const GstL1L2StabArea * area, GstElement * element,
   fault = check_part (config->region);
   if (fault)
     GST_ELEMENT_ERROR (element, LIBRARY, SETTINGS,
-        ("region=%s %s, which has %dx%d pixels. Give x,y,width,height within the frame, width and height at least 1/%d of "
-            "its sides, or use %% signs for frames of every size.",
+        ("region=%s %s, which has %dx%d pixels. Give x,y,width,height within the frame, width and height at least 1/%d "
+            "of its sides, or use %% signs for frames of every size.",
             area->region_text, fault, side[0], side[1], LEAST_PARTS), (NULL));
   return !fault;
 }

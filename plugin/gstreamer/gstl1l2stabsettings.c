@@ -25,8 +25,8 @@ enum
   PROP_POST_MESSAGES,
 };
 
-/* A change takes effect with the next caps, and for a text or file name when the element starts. So these are changed in
- * READY. */
+/* A change takes effect with the next caps, and for a text or file name when the element starts. So these are changed
+ * in READY. */
 #define SETTING_FLAGS \
   (G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY)
 

@@ -10,8 +10,8 @@
  * from frame to frame.
  *
  * Quality, [0, 1]: the part of the consensus weight that agrees. It is less if another motion has much weight too, if
- * the inliers cover little of what is measured, and if the tracks are noisy. If two motions have about equal weight, neither
- * is followed.
+ * the inliers cover little of what is measured, and if the tracks are noisy. If two motions have about equal weight,
+ * neither is followed.
  */
 #ifndef L1L2_MOTION_MODEL_SELECTION_H
 #define L1L2_MOTION_MODEL_SELECTION_H

@@ -106,8 +106,8 @@ static L1L2StabResult set_area(L1L2Motion *m, const L1L2MeasuredArea *area)
         return L1L2STAB_ERR_NOMEM;
     if (share < l1l2_motion_area_least) {
         l1l2_log(m->cfg.log, L1L2STAB_LOG_ERROR,
-                 "region and mask leave %.2g %% of the frame to be measured: at least %g %% is needed, so choose a larger "
-                 "region, or exclude less by the mask (where it is 0, nothing is measured)",
+                 "region and mask leave %.2g %% of the frame to be measured: at least %g %% is needed, so choose a "
+                 "larger region, or exclude less by the mask",
                  100.0 * share, 100.0 * l1l2_motion_area_least);
         return L1L2STAB_ERR_ARGUMENT;
     }

@@ -135,8 +135,8 @@
         "sweep: half x1.12, double x0.99; most: mover on 60 %") \
     ROW(overlay_min_camera, 0.5, "px", "camera motion from which that is evidence of an overlay", \
         "24 texts over a film: half 0.39, double 0.58 px, against 0.40") \
-    ROW(overlay_hits, 3, "frames", "in which a pixel stood still make an overlay of it", \
-        "24 texts, 250 specks, credits: 0.35, 0.09, 0.33 px off; at 5 0.40, 0.12, 0.62; at 10 0.54, 0.17, 0.67") \
+    ROW(overlay_hits, 5, "frames", "in which a pixel stood still make an overlay of it", \
+        "24 texts, specks, credits: 0.40, 0.12, 0.62 px off; 3: 0.35, 0.09, 0.33, but test_shutter fails; 10: 0.54") \
     ROW(overlay_noise, 4, "gray levels", "what stands still changes by less, what moves by more than twice of it", \
         "24 texts, 250 specks, credits: half 0.37, 0.12, 0.71 px, double 0.40, 0.16, 0.44, against 0.40, 0.12, 0.62") \
     /* Dissolves: shot_dissolve.c */ \

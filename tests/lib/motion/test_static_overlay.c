@@ -67,7 +67,7 @@ static void learn(Overlay *t, int frames, int speed, bool patch_moves, const L1L
 START_TEST(what_stands_still_while_the_camera_moves_is_covered_until_nothing_is_seen_of_it_for_long)
 {
     Overlay t = overlay_new();
-    learn(&t, 4, 2, false, &t.camera);
+    learn(&t, (int)l1l2_motion_defaults.overlay_hits - 1, 2, false, &t.camera);
     ck_assert(!l1l2_motion_overlay_covers(&t.o, t.in));
     learn(&t, 26, 2, false, &t.camera);
     ck_assert(l1l2_motion_overlay_covers(&t.o, t.in));

@@ -64,6 +64,56 @@ transform_size (GstStructure * structure, const L1L2StabConfig * settings,
     set_size_range (structure, 1);
 }
 
+/* A demuxer that does not know the frame rate may put the clock's rate into the caps, such as 90000/1. */
+static gboolean
+is_no_frame_rate (const GValue * rate)
+{
+  return rate && GST_VALUE_HOLDS_FRACTION (rate)
+      && gst_util_fraction_compare (gst_value_get_fraction_numerator (rate),
+      gst_value_get_fraction_denominator (rate),
+      GST_L1L2_STAB_MAX_FRAME_RATE, 1) > 0;
+}
+
+static gboolean
+may_be_variable (const GValue * rate)
+{
+  GValue variable = G_VALUE_INIT;
+  gboolean may;
+
+  g_value_init (&variable, GST_TYPE_FRACTION);
+  gst_value_set_fraction (&variable, 0, 1);
+  may = rate && gst_value_intersect (NULL, &variable, rate);
+  g_value_unset (&variable);
+  return may;
+}
+
+/* Such a rate goes out as 0/1, a variable one: an encoder that took it for true would keep next to nothing of each frame.
+ * The frames have their own times. So where a variable rate goes out, such a rate may come in. */
+static GstCaps *
+transform_rate (GstCaps * caps, GstPadDirection direction)
+{
+  guint i, n = gst_caps_get_size (caps);
+
+  for (i = 0; i < n; i++) {
+    GstStructure *structure = gst_caps_get_structure (caps, i);
+    const GValue *rate = gst_structure_get_value (structure, "framerate");
+
+    if (direction == GST_PAD_SINK && is_no_frame_rate (rate)) {
+      caps = gst_caps_make_writable (caps);
+      gst_structure_set (gst_caps_get_structure (caps, i),
+          "framerate", GST_TYPE_FRACTION, 0, 1, NULL);
+    } else if (direction == GST_PAD_SRC && may_be_variable (rate)) {
+      structure = gst_structure_copy (structure);
+      gst_structure_set (structure, "framerate", GST_TYPE_FRACTION_RANGE,
+          GST_L1L2_STAB_MAX_FRAME_RATE, 1, G_MAXINT, 1, NULL);
+      caps = gst_caps_make_writable (caps);
+      gst_caps_append_structure_full (caps, structure, gst_caps_features_copy
+          (gst_caps_get_features (caps, i)));
+    }
+  }
+  return caps;
+}
+
 GstCaps *
 gst_l1l2_stab_caps_transform (const L1L2StabConfig * settings,
     GstPadDirection direction, GstCaps * caps, GstCaps * filter)
@@ -78,6 +128,7 @@ gst_l1l2_stab_caps_transform (const L1L2StabConfig * settings,
   } else {
     other = gst_caps_ref (caps);
   }
+  other = transform_rate (other, direction);
 
   if (!filter)
     return other;

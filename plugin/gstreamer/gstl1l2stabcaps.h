@@ -13,6 +13,10 @@ G_BEGIN_DECLS
 #define GST_L1L2_STAB_MIN_SIZE 16
 #define GST_L1L2_STAB_MAX_SIZE 16384
 
+/* The highest frame rate that the library accepts. Caps with a higher one have a clock's rate, as demuxers write it that
+ * do not know the frame rate (90000/1). It is taken as a variable rate. */
+#define GST_L1L2_STAB_MAX_FRAME_RATE 1000
+
 void gst_l1l2_stab_caps_add_templates (GstElementClass * klass);
 
 /* The caps of the other pad, if `caps` are those of the pad of this direction. `filter` may be NULL. */

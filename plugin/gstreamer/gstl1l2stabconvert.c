@@ -5,10 +5,6 @@
 
 #define GST_CAT_DEFAULT gst_l1l2_stab_debug
 
-/* The highest frame rate that the library accepts. The rate only scales lambda, so a faster camera is treated as one of
- * this rate. */
-#define MAX_FRAME_RATE 1000.0
-
 /* The library's range. */
 #define MIN_PIXEL_ASPECT 0.1
 #define MAX_PIXEL_ASPECT 10.0
@@ -108,7 +104,8 @@ gst_l1l2_stab_convert_config (L1L2StabConfig * config, const GstVideoInfo * info
 
     gst_util_fraction_to_double (GST_VIDEO_INFO_FPS_N (info),
         GST_VIDEO_INFO_FPS_D (info), &rate);
-    config->frame_rate = MIN (rate, MAX_FRAME_RATE);
+    if (rate <= GST_L1L2_STAB_MAX_FRAME_RATE)
+      config->frame_rate = rate;
   }
 }
 

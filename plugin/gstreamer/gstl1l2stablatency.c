@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "gstl1l2stablatency.h"
 
+#include "gstl1l2stabcaps.h"
 #include "gstl1l2stabconvert.h"
 
 /* The frame rate that is assumed if the caps have none: a latency that is too long does less harm than none. */
@@ -14,14 +15,22 @@ gst_l1l2_stab_latency_init (GstL1L2StabLatency * latency, GstElement * element)
   latency->element = element;
 }
 
+static gboolean
+get_field (const GstStructure * structure, const gchar * field, gint * fps_n,
+    gint * fps_d)
+{
+  return gst_structure_get_fraction (structure, field, fps_n, fps_d)
+      && *fps_n > 0 && *fps_d > 0
+      && gst_util_fraction_compare (*fps_n, *fps_d,
+      GST_L1L2_STAB_MAX_FRAME_RATE, 1) <= 0;
+}
+
 /* The frame rate. If it is variable: the highest one, if the caps say it. */
 static gboolean
 get_rate (const GstStructure * structure, gint * fps_n, gint * fps_d)
 {
-  return (gst_structure_get_fraction (structure, "framerate", fps_n, fps_d)
-      && *fps_n > 0 && *fps_d > 0)
-      || (gst_structure_get_fraction (structure, "max-framerate", fps_n, fps_d)
-      && *fps_n > 0 && *fps_d > 0);
+  return get_field (structure, "framerate", fps_n, fps_d)
+      || get_field (structure, "max-framerate", fps_n, fps_d);
 }
 
 void

@@ -141,7 +141,7 @@ static const gchar *kept[] = {
       "colorimetry=bt2100-pq, chroma-site=cosited, pixel-aspect-ratio=4/3, "
       "mastering-display-info=(string)35400:14600:8500:39850:6550:2300:15635:"
       "16450:10000000:50, content-light-level=(string)1000:400",
-  "video/x-raw, format=NV12, width=64, height=48, framerate=120000/1"
+  "video/x-raw, format=NV12, width=64, height=48, framerate=1000/1"
 };
 
 GST_START_TEST (all_fields_of_the_caps_are_kept)
@@ -156,6 +156,45 @@ GST_START_TEST (all_fields_of_the_caps_are_kept)
       caps);
   gst_caps_unref (caps);
   gst_caps_unref (expected);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+/* A clock's rate in place of a frame rate: an encoder would take it for true. */
+GST_START_TEST (a_frame_rate_that_no_video_has_goes_out_as_variable)
+{
+  GstHarness *h = stab_harness_new ("video/x-raw, format=GRAY8, width=64, "
+      "height=48, framerate=90000/1", "window", WINDOW, NULL);
+  GstCaps *caps, *accepted, *clock_rate;
+  gint fps_n, fps_d;
+
+  stab_push_frames (h, 0, WINDOW);
+  caps = gst_pad_get_current_caps (h->sinkpad);
+  fail_unless (gst_structure_get_fraction (gst_caps_get_structure (caps, 0),
+          "framerate", &fps_n, &fps_d) && fps_n == 0, "%" GST_PTR_FORMAT, caps);
+  /* As where no rate is known: 25 frames a second are assumed. */
+  fail_unless_equals_uint64 (gst_harness_query_latency (h),
+      WINDOW * GST_SECOND / 25);
+  gst_harness_push_event (h, gst_event_new_eos ());
+  stab_pull_frames (h, 0, WINDOW);
+  gst_caps_unref (caps);
+  stab_harness_free (h);
+
+  /* A downstream element that takes variable rates only. */
+  h = stab_harness_new (NULL, "window", WINDOW, NULL);
+  gst_harness_set_sink_caps_str (h, "video/x-raw, format=GRAY8, width=64, "
+      "height=48, framerate=0/1");
+  accepted = gst_pad_peer_query_caps (h->srcpad, NULL);
+  clock_rate = gst_caps_from_string ("video/x-raw, format=GRAY8, width=64, "
+      "height=48, framerate=90000/1");
+  fail_unless (gst_caps_can_intersect (accepted, clock_rate),
+      "%" GST_PTR_FORMAT, accepted);
+  gst_caps_set_simple (clock_rate, "framerate", GST_TYPE_FRACTION, 30, 1, NULL);
+  fail_if (gst_caps_can_intersect (accepted, clock_rate),
+      "%" GST_PTR_FORMAT, accepted);
+  gst_caps_unref (clock_rate);
+  gst_caps_unref (accepted);
   stab_harness_free (h);
 }
 
@@ -265,6 +304,7 @@ caps_suite (void)
   tcase_add_test (tc, only_system_memory_is_offered);
   tcase_add_loop_test (tc, all_fields_of_the_caps_are_kept, 0,
       G_N_ELEMENTS (kept));
+  tcase_add_test (tc, a_frame_rate_that_no_video_has_goes_out_as_variable);
   tcase_add_loop_test (tc,
       output_size_crop_gives_the_crop_windows_size_in_even_numbers, 0,
       G_N_ELEMENTS (crops));

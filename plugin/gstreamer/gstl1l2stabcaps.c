@@ -87,8 +87,8 @@ may_be_variable (const GValue * rate)
   return may;
 }
 
-/* Such a rate goes out as 0/1, a variable one: an encoder that took it for true would keep next to nothing of each frame.
- * The frames have their own times. So where a variable rate goes out, such a rate may come in. */
+/* Such a rate goes out as 0/1, a variable one: an encoder that took it for true would keep next to nothing of each
+ * frame. The frames have their own times. So where a variable rate goes out, such a rate may come in. */
 static GstCaps *
 transform_rate (GstCaps * caps, GstPadDirection direction)
 {

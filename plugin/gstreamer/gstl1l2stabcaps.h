@@ -13,8 +13,8 @@ G_BEGIN_DECLS
 #define GST_L1L2_STAB_MIN_SIZE 16
 #define GST_L1L2_STAB_MAX_SIZE 16384
 
-/* The highest frame rate that the library accepts. Caps with a higher one have a clock's rate, as demuxers write it that
- * do not know the frame rate (90000/1). It is taken as a variable rate. */
+/* The highest frame rate that the library accepts. A higher one in the caps is a clock's rate, such as 90000/1, from a
+ * demuxer that does not know the frame rate. It is taken as a variable rate. */
 #define GST_L1L2_STAB_MAX_FRAME_RATE 1000
 
 void gst_l1l2_stab_caps_add_templates (GstElementClass * klass);

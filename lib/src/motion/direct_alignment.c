@@ -916,7 +916,7 @@ void l1l2_motion_align_check(L1L2DirectAlignment *d, const L1L2FloatPyramid *now
     Guess measured = {.F = *F, .gain = d->gain, .offset = d->offset};
     judge(d, other->level, &measured);
     const Guess better = refine_near(d, other->level, &measured, expected);
-    *out = (L1L2AlignmentCheck){.better = better.F};
+    *out = (L1L2AlignmentCheck){0.0, 0.0};
     if (distance(d, &better.F, F) < same)
         return;
     survey(d, other->level, &measured, cell);

@@ -90,9 +90,9 @@ void l1l2_motion_align(L1L2DirectAlignment *d, const L1L2FloatPyramid *now, cons
 
 /* What whole pictures say of a motion that was measured otherwise. */
 typedef struct L1L2AlignmentCheck {
-    L1L2Mat better;          /* the motion that fits best of those found from it and from the expected one */
-    double support, against; /* parts of the cells with detail: where the motion, and where the better one, fits clearly
-                              * better than the other of the two */
+    /* Parts of the cells with detail: where it fits clearly better than the best motion found from it and from the
+     * expected one, and where that one does. */
+    double support, against;
 } L1L2AlignmentCheck;
 
 /* Compares F with what a few steps of refinement make of it and of `expected`, at level 0. With small pictures that

@@ -18,7 +18,11 @@
 #include "rolling_shutter/camera_gate.h"
 #include "rolling_shutter/fit.h"
 
-enum { MAX_POINTS = L1L2_RANSAC_MAX_PAIRS, OVERLAY_LEVEL = 1 };
+enum {
+    MAX_POINTS = L1L2_RANSAC_MAX_PAIRS,
+    OVERLAY_LEVEL = 1, /* of the pyramid, where static overlays are found */
+    CHECK_LEVEL = 2    /* and where motions are checked by whole pictures */
+};
 
 /* The least distance of points in tiny pictures: corners are found by windows of 3x3 pixels. */
 static const double min_distance_px = 3.0;
@@ -59,7 +63,7 @@ struct L1L2Motion {
     L1L2ShotCut cut;
     L1L2ShotDissolve dissolve;
     L1L2WholePicture *whole;  /* NULL: pictures too small */
-    int since_contradiction;  /* frames */
+    int since_contradiction;  /* frames, of the tracks by whole pictures */
     bool was_tracked;         /* the tracks of the frame before yielded a motion, or it is the first of a shot */
     L1L2MotionGap gap;        /* of frames whose tracks yielded no motion */
     L1L2Mat tracks_F;         /* what the tracks of the frame before yielded */
@@ -119,7 +123,31 @@ static L1L2StabResult set_area(L1L2Motion *m, const L1L2MeasuredArea *area)
 static void take_pictures(const L1L2Motion *m, bool previous, L1L2GrayPicture picture[L1L2_WHOLE_PICTURE_SIZES])
 {
     picture[L1L2_WHOLE_PICTURE_FULL] = l1l2_vision_picture(m->vision, previous, 0);
-    picture[L1L2_WHOLE_PICTURE_SMALL] = l1l2_vision_picture(m->vision, previous, 2);
+    picture[L1L2_WHOLE_PICTURE_SMALL] = l1l2_vision_picture(m->vision, previous, CHECK_LEVEL);
+}
+
+static L1L2StabResult build(L1L2Motion *m, const L1L2MotionConfig *cfg)
+{
+    const L1L2VisionConfig vision = {
+        .format = cfg->format,
+        .width = cfg->width,
+        .height = cfg->height,
+        .analysis_size = cfg->analysis_size,
+        .parameters = m->cfg.parameters,
+        .log = cfg->log,
+    };
+    const L1L2StabResult result = l1l2_vision_create(&m->vision, &vision);
+    if (result != L1L2STAB_OK)
+        return result;
+    l1l2_vision_size(m->vision, &m->width, &m->height);
+    configure(m);
+    L1L2GrayPicture size[L1L2_WHOLE_PICTURE_SIZES];
+    take_pictures(m, false, size);
+    const L1L2GrayPicture overlay = l1l2_vision_picture(m->vision, false, OVERLAY_LEVEL);
+    if (!l1l2_motion_whole_picture_create(&m->whole, size, m->pixel_aspect * cfg->width, cfg->height) ||
+        !l1l2_motion_overlay_init(&m->overlay, overlay.width, overlay.height))
+        return L1L2STAB_ERR_NOMEM;
+    return set_area(m, cfg->area);
 }
 
 L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
@@ -129,33 +157,10 @@ L1L2StabResult l1l2_motion_create(L1L2Motion **out, const L1L2MotionConfig *cfg)
     if (!m)
         return L1L2STAB_ERR_NOMEM;
     m->cfg = *cfg;
+    m->cfg.area = NULL; /* the caller's */
     if (!m->cfg.parameters)
         m->cfg.parameters = &l1l2_motion_defaults;
-    const L1L2VisionConfig vision = {
-        .format = cfg->format,
-        .width = cfg->width,
-        .height = cfg->height,
-        .analysis_size = cfg->analysis_size,
-        .parameters = m->cfg.parameters,
-        .log = cfg->log,
-    };
-    L1L2StabResult result = l1l2_vision_create(&m->vision, &vision);
-    if (result != L1L2STAB_OK) {
-        l1l2_motion_free(m);
-        return result;
-    }
-    l1l2_vision_size(m->vision, &m->width, &m->height);
-    configure(m);
-    L1L2GrayPicture size[L1L2_WHOLE_PICTURE_SIZES];
-    take_pictures(m, false, size);
-    if (!l1l2_motion_whole_picture_create(&m->whole, size, m->pixel_aspect * cfg->width, cfg->height)) {
-        l1l2_motion_free(m);
-        return L1L2STAB_ERR_NOMEM;
-    }
-    const L1L2GrayPicture overlay = l1l2_vision_picture(m->vision, false, OVERLAY_LEVEL);
-    result = l1l2_motion_overlay_init(&m->overlay, overlay.width, overlay.height) ? set_area(m, cfg->area)
-                                                                                 : L1L2STAB_ERR_NOMEM;
-    m->cfg.area = NULL; /* the caller's */
+    const L1L2StabResult result = build(m, cfg);
     if (result != L1L2STAB_OK) {
         l1l2_motion_free(m);
         return result;
@@ -180,7 +185,6 @@ void l1l2_motion_reset(L1L2Motion *m)
     l1l2_vision_reset(m->vision);
     l1l2_motion_whole_picture_reset(m->whole);
     m->has_previous = false;
-    m->since_contradiction = 1000;
     m->rng = l1l2_rng_seeded(m->cfg.seed);
     l1l2_motion_overlay_reset(&m->overlay);
     memset(&m->gate, 0, sizeof m->gate);
@@ -191,6 +195,8 @@ static void start_shot(L1L2Motion *m)
 {
     l1l2_motion_gap_close(&m->gap);
     m->was_tracked = true;
+    m->since_contradiction = contradiction_frames + 1;
+    m->tracks_F = l1l2_mat_identity();
     m->points = 0;
     m->since_selection = (int)m->cfg.parameters->reselect_frames;
     l1l2_motion_cut_start(&m->cut, &m->thumbnail);
@@ -359,7 +365,7 @@ static void measure_residual(L1L2Motion *m, const L1L2TrackSet *tracks, L1L2Sele
 
 /* ---- Where the tracks do not yield the motion: whole pictures ---- */
 
-/* F was found from whole pictures. The tracks that agree with it follow the camera. */
+/* F was found from whole pictures. The tracks that agree with it follow the camera. quality: what the pictures say. */
 static L1L2SelectedModel adopt_alignment(L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2Mat *F, double quality)
 {
     int inliers = 0;
@@ -368,7 +374,8 @@ static L1L2SelectedModel adopt_alignment(L1L2Motion *m, const L1L2TrackSet *trac
         m->inlier[i] = m->core[i] = hypot(p.x - to.x, p.y - to.y) <= tracks->threshold;
         inliers += m->inlier[i];
     }
-    L1L2SelectedModel selected = l1l2_motion_model_adopt(&m->selection, F, inliers, quality);
+    L1L2SelectedModel selected = l1l2_motion_model_adopt(&m->selection, F, inliers,
+                                                         fmin(quality, m->cfg.parameters->align_max_quality));
     selected.source = L1L2STAB_MOTION_SOURCE_ALIGNMENT;
     return selected;
 }
@@ -418,7 +425,16 @@ static Doubt find_doubt(L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2Sel
     if (m->since_contradiction <= contradiction_frames)
         return CONTRADICTED;
     l1l2_motion_whole_picture_check(m->whole, &selected->F, expected, l1l2_motion_overlay_mask(&m->overlay), &check);
-    return check.against >= min_against && check.support <= max_support ? CONTRADICTED : SURE;
+    if (check.against < min_against || check.support > max_support)
+        return SURE;
+    m->since_contradiction = 0;
+    return CONTRADICTED;
+}
+
+/* False if the contrast of the two pictures differs so much that one of them is covered. */
+static bool is_same_light(const L1L2MotionParameters *p, const L1L2Alignment *a)
+{
+    return fabs(log(a->evidence.gain)) <= p->align_max_gain;
 }
 
 /* Measures the motion of a frame from whole pictures, if the tracks leave it in doubt. It replaces the motion of the
@@ -430,7 +446,7 @@ static void align_pictures(L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2
     float trust[L1L2_ALIGN_CELLS];
     L1L2Alignment a;
     const Doubt doubt = find_doubt(m, tracks, selected, expected);
-    m->since_contradiction = doubt == CONTRADICTED ? 0 : m->since_contradiction + 1;
+    m->since_contradiction++;
     if (doubt == SURE)
         return;
     const bool measured = selected->source != L1L2STAB_MOTION_SOURCE_NONE;
@@ -441,12 +457,14 @@ static void align_pictures(L1L2Motion *m, const L1L2TrackSet *tracks, const L1L2
     if (doubt == CONTRADICTED)
         guide.layer = &selected->F;
     cell_trust(m, trust);
-    if (!l1l2_motion_whole_picture_align(m->whole, &guide, &a) || fabs(log(a.evidence.gain)) > p->align_max_gain)
+    if (!l1l2_motion_whole_picture_align(m->whole, &guide, &a) || !is_same_light(p, &a))
         return;
     const double better = doubt == CONTRADICTED ? p->contradicted_better : p->align_better;
-    if (!measured || a.evidence.residual < better * a.evidence.start_residual[1])
-        *selected = adopt_alignment(m, tracks, &a.F, fmin(a.evidence.correlation * a.evidence.agreement,
-                                                          p->align_max_quality));
+    if (measured && a.evidence.residual >= better * a.evidence.start_residual[1])
+        return;
+    if (doubt == CONTRADICTED)
+        m->since_contradiction = 0;
+    *selected = adopt_alignment(m, tracks, &a.F, a.evidence.correlation * a.evidence.agreement);
 }
 
 /* Two motions have about equal weight, and whole pictures do not tell either. Many tracks are never given up: one of
@@ -469,7 +487,7 @@ static bool align_with_reference(L1L2Motion *m, L1L2Mat *G)
     L1L2AlignmentGuide guide = {.start = {l1l2_motion_gap_product(&m->gap)}, .starts = 1,
                                 .mask = l1l2_motion_overlay_mask(&m->overlay)};
     if (!l1l2_image_thumbnail_has_detail(&m->thumbnail) || !l1l2_motion_whole_picture_bridge(m->whole, &guide, &a) ||
-        fabs(log(a.evidence.gain)) > m->cfg.parameters->align_max_gain)
+        !is_same_light(m->cfg.parameters, &a))
         return false;
     *G = a.F;
     return true;
@@ -477,7 +495,8 @@ static bool align_with_reference(L1L2Motion *m, L1L2Mat *G)
 
 /* Opens a gap at a frame whose tracks yielded no motion, if those of the frame before did. When a picture is sharp
  * again, measures its motion to the picture before the gap, and makes the motions of all frames since agree with it. */
-static void bridge(L1L2Motion *m, bool tracked, L1L2SelectedModel *selected, L1L2MotionResult *out)
+static void bridge(L1L2Motion *m, const L1L2TrackSet *tracks, bool tracked, L1L2SelectedModel *selected,
+                   L1L2MotionResult *out)
 {
     const bool measured = selected->source != L1L2STAB_MOTION_SOURCE_NONE, opens = m->gap.frames == 0;
     const L1L2Mat *F = measured ? &selected->F : &m->selection.last;
@@ -499,10 +518,13 @@ static void bridge(L1L2Motion *m, bool tracked, L1L2SelectedModel *selected, L1L
     }
     l1l2_motion_gap_bridge(&m->gap, &G);
     out->bridged = m->gap.frames - 1;
-    memcpy(out->bridged_F, m->gap.F, (size_t)out->bridged * sizeof *out->bridged_F);
-    *selected = l1l2_motion_model_adopt(&m->selection, &m->gap.F[out->bridged], selected->inliers,
-                                        fmin(selected->quality, m->cfg.parameters->align_max_quality));
-    selected->source = L1L2STAB_MOTION_SOURCE_ALIGNMENT;
+    for (int i = 0; i < out->bridged; i++)
+        out->bridged_F[i] = l1l2_mat_reduce(&m->gap.F[i], l1l2_mat_dim(m->cfg.model));
+    /* Where tracks were measured, they stay: F has what the frames before it lacked as well. */
+    if (tracked)
+        selected->F = m->gap.F[out->bridged];
+    else
+        *selected = adopt_alignment(m, tracks, &m->gap.F[out->bridged], selected->quality);
     l1l2_motion_gap_close(&m->gap);
 }
 
@@ -540,7 +562,7 @@ static bool measure(L1L2Motion *m, L1L2MotionResult *out)
     align_pictures(m, &tracks, &expected, &selected);
     follow_history(m, &tracks, &selected);
     m->tracks_F = tracks_F;
-    bridge(m, tracked, &selected, out);
+    bridge(m, &tracks, tracked, &selected, out);
     m->had_detail = l1l2_image_thumbnail_has_detail(&m->thumbnail);
     const bool measured = selected.source != L1L2STAB_MOTION_SOURCE_NONE;
     if (l1l2_motion_cut_push(&m->cut, &m->thumbnail, measured)) {
@@ -555,7 +577,9 @@ static bool measure(L1L2Motion *m, L1L2MotionResult *out)
         cut_to(m, "a dissolve");
         return false;
     }
-    if (out->has_residual && selected.source != L1L2STAB_MOTION_SOURCE_ALIGNMENT && measured)
+    if (selected.source == L1L2STAB_MOTION_SOURCE_ALIGNMENT || out->bridged > 0)
+        out->has_residual = false; /* it is what the tracks' own motion leaves */
+    if (out->has_residual)
         l1l2_shutter_gate_push(&m->gate, &m->shape, &selected.F, &out->residual);
     else
         l1l2_shutter_gate_break(&m->gate);

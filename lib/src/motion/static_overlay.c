@@ -12,20 +12,21 @@ enum { MOST = 20 };
 bool l1l2_motion_overlay_init(L1L2StaticOverlay *o, int width, int height)
 {
     o->width = width, o->height = height;
-    if (width * height == 0)
-        return true;
     const size_t pixels = (size_t)width * (size_t)height;
     o->score = l1l2_mem_new(pixels, sizeof *o->score);
+    o->told = l1l2_mem_new(pixels, sizeof *o->told);
     o->covered = l1l2_mem_new(pixels, sizeof *o->covered);
-    return o->score && o->covered;
+    return o->score && o->told && o->covered;
 }
 
 void l1l2_motion_overlay_clear(L1L2StaticOverlay *o)
 {
     l1l2_mem_free(o->score);
+    l1l2_mem_free(o->told);
     l1l2_mem_free(o->covered);
     l1l2_mem_free(o->excluded);
     o->score = o->covered = o->excluded = NULL;
+    o->told = NULL;
 }
 
 bool l1l2_motion_overlay_exclude(L1L2StaticOverlay *o, const L1L2MeasuredArea *area, double *share)
@@ -43,21 +44,8 @@ void l1l2_motion_overlay_reset(L1L2StaticOverlay *o)
     const size_t pixels = (size_t)o->width * (size_t)o->height;
     o->any = false;
     o->stale = o->excluded != NULL;
-    if (pixels == 0)
-        return;
     memset(o->score, 0, pixels);
     memset(o->covered, 0, pixels);
-}
-
-/* What one pixel tells: 1 it stands still, -1 it does not, 0 nothing. What stands still does not change at all, which
- * distinguishes it from a scene that moves by less than the camera's motion says. */
-static int evidence(const L1L2MotionParameters *p, float now, float still, float moved)
-{
-    const float noise = (float)p->overlay_noise, change = 2.0f * noise;
-    const float as_still = fabsf(now - still), as_moved = fabsf(now - moved);
-    if (as_still > change)
-        return -1;
-    return as_still < noise && as_moved > change ? 1 : 0;
 }
 
 /* The previous picture's value at (u, v), which lies within. */
@@ -79,43 +67,58 @@ static double mean_of(const L1L2GrayPicture *g)
     return (double)sum / (g->width * g->height);
 }
 
-/* Pixels that stand still, and that move. */
-typedef struct Survey {
-    int still, moving;
-} Survey;
+/* Two pictures and the camera's motion between them, in their pixels: (x, y) of the current one lies at (u, v) of the
+ * previous one, u = u0 + ux x + uy y. */
+typedef struct Comparison {
+    const L1L2GrayPicture *now, *previous;
+    float offset; /* of brightness, from the previous picture to the current one */
+    double u0, ux, uy, v0, vx, vy;
+} Comparison;
 
-/* Counts them, of the pixels that the previous picture shows too. apply: changes their evidence. */
-static Survey survey(L1L2StaticOverlay *o, const L1L2GrayPicture *now, const L1L2GrayPicture *previous,
-                     const L1L2Mat *F, bool apply)
+static Comparison compare(const L1L2StaticOverlay *o, const L1L2GrayPicture *now, const L1L2GrayPicture *previous,
+                          const L1L2Mat *F)
 {
     const double unit_x = 2.0 * o->half_w / o->width, unit_y = 2.0 * o->half_h / o->height;
-    const float offset = (float)(mean_of(now) - mean_of(previous));
-    Survey sum = {0, 0};
-    for (int y = 0; y < o->height; y++) {
-        const double py = (y + 0.5) * unit_y - o->half_h, x0 = 0.5 * unit_x - o->half_w;
-        const float u0 = (float)((F->m[0] * x0 + F->m[1] * py + F->m[2] + o->half_w) / unit_x - 0.5);
-        const float v0 = (float)((F->m[3] * x0 + F->m[4] * py + F->m[5] + o->half_h) / unit_y - 0.5);
-        const float du = (float)F->m[0], dv = (float)(F->m[3] * unit_x / unit_y);
-        const ptrdiff_t row = (ptrdiff_t)y * o->width;
-        const uint8_t *excluded = o->excluded ? o->excluded + row : NULL;
+    const double x0 = 0.5 * unit_x - o->half_w, y0 = 0.5 * unit_y - o->half_h;
+    const double *f = F->m;
+    return (Comparison){
+        .now = now,
+        .previous = previous,
+        .offset = (float)(mean_of(now) - mean_of(previous)),
+        .u0 = (f[0] * x0 + f[1] * y0 + f[2] - x0) / unit_x,
+        .ux = f[0],
+        .uy = f[1] * unit_y / unit_x,
+        .v0 = (f[3] * x0 + f[4] * y0 + f[5] - y0) / unit_y,
+        .vx = f[3] * unit_x / unit_y,
+        .vy = f[4],
+    };
+}
+
+/* What a pixel of the current picture tells: 1 it stands still, -1 it does not, 0 nothing. What stands still does not
+ * change at all, which distinguishes it from a scene that moves by less than the camera's motion says. */
+static int evidence(const Comparison *c, int x, int y, float noise)
+{
+    const float u = (float)(c->u0 + c->ux * x + c->uy * y), v = (float)(c->v0 + c->vx * x + c->vy * y);
+    if (!(u >= 0.0f && v >= 0.0f && u < (float)(c->previous->width - 1) && v < (float)(c->previous->height - 1)))
+        return 0;
+    const float change = 2.0f * noise, now = (float)c->now->data[y * c->now->stride + x] - c->offset;
+    const float as_still = fabsf(now - (float)c->previous->data[y * c->previous->stride + x]);
+    if (as_still > change)
+        return -1;
+    return as_still < noise && fabsf(now - sample_at(c->previous, u, v)) > change ? 1 : 0;
+}
+
+/* What each pixel tells, in o->told, and for how many of them it stands still less for how many it moves. */
+static int gather_evidence(L1L2StaticOverlay *o, const Comparison *c)
+{
+    const float noise = (float)o->parameters->overlay_noise;
+    int sum = 0;
+    for (int y = 0; y < o->height; y++)
         for (int x = 0; x < o->width; x++) {
-            const float u = u0 + (float)x * du, v = v0 + (float)x * dv;
-            if (excluded && excluded[x])
-                continue;
-            if (!(u >= 0.0f && v >= 0.0f && u < (float)(o->width - 1) && v < (float)(o->height - 1)))
-                continue;
-            const int told = evidence(o->parameters, (float)now->data[y * now->stride + x],
-                                      (float)previous->data[y * previous->stride + x] + offset,
-                                      sample_at(previous, u, v) + offset);
-            uint8_t *score = &o->score[row + x];
-            sum.still += told > 0;
-            sum.moving += told < 0;
-            if (apply && told > 0 && *score < MOST)
-                ++*score;
-            else if (apply && told < 0)
-                *score -= *score > 0;
+            const int i = y * o->width + x;
+            o->told[i] = (int8_t)(o->excluded && o->excluded[i] ? 0 : evidence(c, x, y, noise));
+            sum += o->told[i];
         }
-    }
     return sum;
 }
 
@@ -125,14 +128,17 @@ void l1l2_motion_overlay_learn(L1L2StaticOverlay *o, const L1L2GrayPicture *now,
 {
     const L1L2Mat identity = l1l2_mat_identity();
     const double pixel = o->half_w / o->width; /* of the downscaled picture, which is twice as large */
-    if (!o->score || l1l2_mat_corner_distance(F, &identity, o->half_w, o->half_h) <
-                         o->parameters->overlay_min_camera * pixel)
+    const int hits = (int)o->parameters->overlay_hits, pixels = o->width * o->height;
+    if (l1l2_mat_corner_distance(F, &identity, o->half_w, o->half_h) < o->parameters->overlay_min_camera * pixel)
         return;
-    const Survey seen = survey(o, now, previous, F, false);
-    if (seen.still >= seen.moving || seen.still + seen.moving == 0)
+    const Comparison c = compare(o, now, previous, F);
+    if (gather_evidence(o, &c) >= 0)
         return;
-    survey(o, now, previous, F, true);
-    o->stale = true;
+    for (int i = 0; i < pixels; i++) {
+        const int score = o->score[i] + o->told[i], kept = score < 0 ? 0 : score > MOST ? MOST : score;
+        o->stale |= (kept >= hits) != (o->score[i] >= hits);
+        o->score[i] = (uint8_t)kept;
+    }
 }
 
 static int least_of(int a, int b)

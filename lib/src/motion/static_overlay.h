@@ -24,6 +24,7 @@ typedef struct L1L2StaticOverlay {
     double half_w, half_h; /* of the frame, diagonals */
     int width, height;     /* of the pictures, pixels */
     uint8_t *score;        /* evidence of each pixel, row by row */
+    int8_t *told;          /* what the newest frame told of it */
     uint8_t *excluded;     /* 1: not to be measured; NULL: all is measured */
     uint8_t *covered;      /* 1: an overlay, or near one, or excluded */
     bool any;              /* some pixel is covered */

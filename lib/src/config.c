@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "border/neighbors.h"
 #include "common/log.h"
 #include "common/struct_size.h"
 
@@ -37,6 +38,7 @@ void l1l2stab_config_init(L1L2StabConfig *cfg, size_t struct_size)
         .rolling_shutter = L1L2STAB_ROLLING_SHUTTER_MIXTURE,
         .pixel_aspect = 1.0,
         .region = {0.0, 0.0, 1.0, 1.0},
+        .fill_frames = 30,
     };
     if (!cfg || struct_size < sizeof cfg->struct_size)
         return;
@@ -112,6 +114,16 @@ static bool mask_fits(const L1L2StabConfig *cfg)
     return false;
 }
 
+static bool border_fits(const L1L2StabConfig *cfg)
+{
+    if (cfg->border == L1L2STAB_BORDER_CROP || cfg->output_size == L1L2STAB_OUTPUT_SIZE_INPUT)
+        return true;
+    l1l2_log(&cfg->logger, L1L2STAB_LOG_ERROR,
+             "border=%s shows the whole frame, and output_size=crop a part of it: choose one of them",
+             cfg->border == L1L2STAB_BORDER_FILL ? "fill" : "extend");
+    return false;
+}
+
 /* Every range that does not depend on another field. What does depend is computed and checked after these. */
 static bool ranges_fit(const L1L2StabConfig *cfg)
 {
@@ -131,7 +143,8 @@ static bool ranges_fit(const L1L2StabConfig *cfg)
            in_range(cfg, "rolling_shutter", cfg->rolling_shutter, L1L2STAB_ROLLING_SHUTTER_NONE,
                     L1L2STAB_ROLLING_SHUTTER_MIXTURE) &&
            in_range(cfg, "pixel_aspect", cfg->pixel_aspect, 0.1, 10) && weights_fit(cfg) && region_fits(cfg) &&
-           mask_fits(cfg);
+           mask_fits(cfg) && in_range(cfg, "border", cfg->border, L1L2STAB_BORDER_CROP, L1L2STAB_BORDER_EXTEND) &&
+           in_range(cfg, "fill_frames", cfg->fill_frames, 0, L1L2_BORDER_MAX_FRAMES) && border_fits(cfg);
 }
 
 /* Fields that the caller's config knows but this library does not: the logger is one that both know. */

@@ -11,15 +11,15 @@ _Static_assert((int)L1L2_SHUTTER_FILTER_PAST <= (int)L1L2_FRAME_QUEUE_PAST,
 
 L1L2QueuedFrame *l1l2_frame_queue_at(const L1L2FrameQueue *queue, int64_t t)
 {
-    assert(t >= queue->begin && t < queue->end);
+    assert(t >= queue->kept && t < queue->end);
     return &queue->records[t % queue->rows];
 }
 
-bool l1l2_frame_queue_init(L1L2FrameQueue *queue, int capacity)
+bool l1l2_frame_queue_init(L1L2FrameQueue *queue, int capacity, int keep)
 {
-    const int rows = capacity + L1L2_FRAME_QUEUE_PAST;
+    const int rows = capacity + (keep > L1L2_FRAME_QUEUE_PAST ? keep : L1L2_FRAME_QUEUE_PAST);
     *queue = (L1L2FrameQueue){.records = l1l2_mem_new((size_t)rows, sizeof *queue->records), .capacity = capacity,
-                              .rows = rows};
+                              .keep = keep, .rows = rows};
     return queue->records != NULL;
 }
 
@@ -34,7 +34,8 @@ void l1l2_frame_queue_reset(L1L2FrameQueue *queue)
 {
     while (queue->begin < queue->end)
         l1l2_frame_queue_drop_oldest(queue);
-    queue->begin = queue->end = 0;
+    l1l2_frame_queue_release_kept(queue);
+    queue->begin = queue->end = queue->kept = 0;
 }
 
 int l1l2_frame_queue_count(const L1L2FrameQueue *queue)
@@ -61,12 +62,25 @@ L1L2QueuedFrame *l1l2_frame_queue_newest(const L1L2FrameQueue *queue)
     return l1l2_frame_queue_at(queue, queue->end - 1);
 }
 
-void l1l2_frame_queue_drop_oldest(L1L2FrameQueue *queue)
+static void release_oldest_kept(L1L2FrameQueue *queue)
 {
-    const L1L2StabFrame frame = l1l2_frame_queue_oldest(queue)->frame;
-    queue->begin++;
+    const L1L2StabFrame frame = l1l2_frame_queue_at(queue, queue->kept++)->frame;
     if (frame.release)
         frame.release(frame.opaque);
+}
+
+void l1l2_frame_queue_drop_oldest(L1L2FrameQueue *queue)
+{
+    assert(l1l2_frame_queue_count(queue) > 0);
+    queue->begin++;
+    while (queue->begin - queue->kept > queue->keep)
+        release_oldest_kept(queue);
+}
+
+void l1l2_frame_queue_release_kept(L1L2FrameQueue *queue)
+{
+    while (queue->kept < queue->begin)
+        release_oldest_kept(queue);
 }
 
 static L1L2FrameColumn column(const L1L2FrameQueue *queue, void *first)

@@ -35,19 +35,21 @@ typedef struct L1L2QueuedFrame {
 typedef struct L1L2FrameQueue {
     L1L2QueuedFrame *records; /* frame t is at t modulo rows */
     int capacity;             /* frames that can be held */
-    int rows;                 /* capacity and L1L2_FRAME_QUEUE_PAST */
+    int keep;                 /* frames that were dropped last whose pixels are kept */
+    int rows;                 /* capacity, and L1L2_FRAME_QUEUE_PAST or keep, whichever is larger */
     int64_t begin, end;       /* held are the frames t with begin <= t < end */
+    int64_t kept;             /* frames t with kept <= t < begin were dropped, but not yet released */
 } L1L2FrameQueue;
 
 enum { L1L2_FRAME_QUEUE_PAST = 8 }; /* pulled frames whose records are kept */
 
 /* False when out of memory. */
-bool l1l2_frame_queue_init(L1L2FrameQueue *queue, int capacity);
+bool l1l2_frame_queue_init(L1L2FrameQueue *queue, int capacity, int keep);
 
-/* Releases what is held and frees the memory; fine on a zeroed queue. */
+/* Releases what is held and kept, and frees the memory; fine on a zeroed queue. */
 void l1l2_frame_queue_clear(L1L2FrameQueue *queue);
 
-/* Releases what is held; numbers begin at 0 again. */
+/* Releases what is held and kept; numbers begin at 0 again. */
 void l1l2_frame_queue_reset(L1L2FrameQueue *queue);
 
 /* How many frames are held. */
@@ -60,11 +62,14 @@ L1L2QueuedFrame *l1l2_frame_queue_append(L1L2FrameQueue *queue);
 L1L2QueuedFrame *l1l2_frame_queue_oldest(const L1L2FrameQueue *queue);
 L1L2QueuedFrame *l1l2_frame_queue_newest(const L1L2FrameQueue *queue);
 
-/* A frame that is held: number t, [begin, end). */
+/* A frame that is held or kept: number t, [kept, end). */
 L1L2QueuedFrame *l1l2_frame_queue_at(const L1L2FrameQueue *queue, int64_t t);
 
-/* Releases the oldest frame. */
+/* Drops the oldest frame. A frame is released when `keep` more have been dropped. */
 void l1l2_frame_queue_drop_oldest(L1L2FrameQueue *queue);
+
+/* Releases the frames that were dropped and kept. */
+void l1l2_frame_queue_release_kept(L1L2FrameQueue *queue);
 
 /* The fields of all frames that the path and the filter work on, and the motions alone. */
 L1L2FrameColumn l1l2_frame_queue_path_frames(const L1L2FrameQueue *queue);

@@ -4,7 +4,7 @@
  *
  *   push    motion/worker.c: steps 1 and 2a, the motion F_t, beside the caller
  *           path/path.c: steps 2b and 3, C_t and B_t, once the motion is known: settle()
- *   pull    rolling_shutter/filter.c: step 4, warp/warp.c: step 5
+ *   pull    rolling_shutter/filter.c: step 4, warp/warp.c: step 5, or border/border.c, which crops nothing
  *
  * States: open -> finished (finish) -> open (reset). A frame waits in the queue from push to pull. Its record there has
  * all that is known of it. Motions are in diagonals from the moment that they are known; units.h converts for the
@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "border/border.h"
 #include "common/clock.h"
 #include "common/fade.h"
 #include "common/log.h"
@@ -24,6 +25,7 @@
 #include "frame_time.h"
 #include "info.h"
 #include "motion/worker.h"
+#include "neighbors_of.h"
 #include "path/path.h"
 #include "rolling_shutter/filter.h"
 #include "units.h"
@@ -39,6 +41,9 @@ struct L1L2Stab {
     L1L2Path *path;
     L1L2ShutterFilter *filter;
     L1L2Warp *warp;
+    L1L2Border *border;        /* NULL: the picture is cropped */
+    L1L2BorderNeighbor *neighbors; /* room for those of one frame */
+    bool border_rendered;      /* the border has a map of a frame's pixels */
     L1L2FrameQueue queue;
     L1L2FrameTime time;        /* of the frame pushed last */
     bool finished;
@@ -49,10 +54,35 @@ struct L1L2Stab {
     double lambda, crop_ratio; /* of the frames that are pushed from now on */
 };
 
+/* Neighbors are at most so many frames away. */
+static int reach_of(const L1L2StabConfig *cfg)
+{
+    return cfg->border == L1L2STAB_BORDER_FILL ? cfg->fill_frames : 0;
+}
+
+static L1L2StabResult build_border(L1L2Stab *s)
+{
+    const L1L2StabConfig *cfg = &s->cfg;
+    const L1L2BorderConfig border = {
+        .format = s->format,
+        .width = cfg->width,
+        .height = cfg->height,
+        .chroma_site = cfg->chroma_site,
+        .reach = reach_of(cfg),
+        .warp = s->warp,
+        .pool = s->pool,
+    };
+    if (cfg->border == L1L2STAB_BORDER_CROP)
+        return L1L2STAB_OK;
+    s->border = l1l2_border_new(&border);
+    s->neighbors = l1l2_mem_new((size_t)(2 * border.reach + 1), sizeof *s->neighbors);
+    return s->border && s->neighbors ? L1L2STAB_OK : L1L2STAB_ERR_NOMEM;
+}
+
 static L1L2StabResult build(L1L2Stab *s)
 {
     const L1L2StabConfig *cfg = &s->cfg;
-    if (!s->pool || !l1l2_frame_queue_init(&s->queue, cfg->window))
+    if (!s->pool || !l1l2_frame_queue_init(&s->queue, cfg->window, reach_of(cfg)))
         return L1L2STAB_ERR_NOMEM;
     const L1L2MeasuredArea area = {
         .region = {cfg->region[0], cfg->region[1], cfg->region[2], cfg->region[3]},
@@ -106,6 +136,7 @@ static L1L2StabResult build(L1L2Stab *s)
         .motions = l1l2_frame_queue_motions(&s->queue),
         .frames = l1l2_frame_queue_shutter_frames(&s->queue),
         .pixel_aspect = cfg->pixel_aspect,
+        .may_leave = cfg->border != L1L2STAB_BORDER_CROP,
     };
     L1L2StabResult result = l1l2_motion_worker_create(&s->worker, &motion, s->pool);
     if (result == L1L2STAB_OK)
@@ -114,7 +145,7 @@ static L1L2StabResult build(L1L2Stab *s)
         result = l1l2_warp_create(&s->warp, &warp);
     if (result == L1L2STAB_OK)
         result = l1l2_shutter_filter_create(&s->filter, &filter);
-    return result;
+    return result == L1L2STAB_OK ? build_border(s) : result;
 }
 
 L1L2StabResult l1l2stab_create(L1L2Stab **out, const L1L2StabConfig *cfg)
@@ -157,6 +188,8 @@ void l1l2stab_free(L1L2Stab **s)
     l1l2_frame_queue_clear(&(*s)->queue);
     l1l2_path_free((*s)->path);
     l1l2_shutter_filter_free((*s)->filter);
+    l1l2_border_free((*s)->border);
+    l1l2_mem_free((*s)->neighbors);
     l1l2_warp_free((*s)->warp);
     l1l2_pool_free((*s)->pool);
     l1l2_mem_free(*s);
@@ -172,6 +205,9 @@ void l1l2stab_reset(L1L2Stab *s)
     s->time = l1l2_frame_time_start(s->cfg.frame_rate);
     l1l2_path_reset(s->path);
     l1l2_shutter_filter_reset(s->filter);
+    if (s->border)
+        l1l2_border_reset(s->border);
+    s->border_rendered = false;
     s->finished = false;
     s->hurried = 0;
     s->error = L1L2STAB_OK;
@@ -409,11 +445,12 @@ L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque)
     return L1L2STAB_OK;
 }
 
-/* Output pixel to source pixel, in samples: B_t after the zoom that makes the crop window out of the output picture. */
+/* Output pixel to source pixel, in samples: B_t after the zoom that makes the crop window out of the output picture. If
+ * the border is not cropped there is no zoom. */
 static L1L2Mat warp_map(const L1L2Stab *s, const L1L2Mat *B, double crop_ratio)
 {
-    const bool fill = s->cfg.output_size == L1L2STAB_OUTPUT_SIZE_INPUT;
-    const double zoom = fill ? crop_ratio : crop_ratio / s->cfg.crop_ratio;
+    const bool zooms = s->cfg.output_size == L1L2STAB_OUTPUT_SIZE_INPUT;
+    const double zoom = s->border ? 1.0 : zooms ? crop_ratio : crop_ratio / s->cfg.crop_ratio;
     const L1L2Mat shown = l1l2_mat_mul(l1l2_mat_rescale(*B, s->diagonal_px), l1l2_mat_diagonal(zoom, zoom));
     return l1l2_mat_to_samples(shown, s->cfg.pixel_aspect);
 }
@@ -444,6 +481,43 @@ static void fetch_path(L1L2Stab *s)
     s->smooth = l1l2_mat_mul(s->camera, next->B);
 }
 
+/* Step 5. */
+static L1L2BorderShares render(L1L2Stab *s, const L1L2WarpMap *map, const L1L2StabFrame *target)
+{
+    const L1L2StabFrame *frame = &l1l2_frame_queue_oldest(&s->queue)->frame;
+    const uint8_t *const *src = (const uint8_t *const *)frame->data;
+    if (!s->border) {
+        l1l2_warp_render(s->warp, map, src, frame->stride, target->data, target->stride);
+        return (L1L2BorderShares){0.0, 0.0};
+    }
+    const L1L2Geometry geometry = {s->diagonal_px, s->cfg.pixel_aspect};
+    const int64_t known_end = s->queue.end - l1l2_motion_worker_is_open(s->worker);
+    const L1L2BorderJob job = {
+        .t = s->queue.begin,
+        .own = map,
+        .src = src,
+        .src_stride = frame->stride,
+        .dst = target->data,
+        .dst_stride = target->stride,
+        .neighbors = s->neighbors,
+        .count = l1l2_neighbors_of_oldest(&s->queue, reach_of(&s->cfg), known_end, &geometry, s->neighbors),
+    };
+    s->border_rendered = true;
+    return l1l2_border_render(s->border, &job);
+}
+
+L1L2StabResult l1l2stab_border_map(const L1L2Stab *s, uint8_t *map, ptrdiff_t stride)
+{
+    if (!s || !map)
+        return L1L2STAB_ERR_ARGUMENT;
+    if (!s->border_rendered)
+        return L1L2STAB_ERR_STATE;
+    const uint8_t *provider = l1l2_border_providers(s->border);
+    for (int y = 0; y < s->out_height; y++)
+        memcpy(map + y * stride, provider + (size_t)y * (size_t)s->out_width, (size_t)s->out_width);
+    return L1L2STAB_OK;
+}
+
 L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info)
 {
     L1L2StabFrame target;
@@ -468,9 +542,9 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
     double residual_px;
     const L1L2WarpMap bent = {.affine = map,
                               .mesh = l1l2_shutter_filter_mesh(s->filter, &map, 1.0 - bypass, &residual_px)};
+    L1L2BorderShares shares = {0.0, 0.0};
     if (out) {
-        l1l2_warp_render(s->warp, &bent, (const uint8_t *const *)record->frame.data, record->frame.stride, target.data,
-                         target.stride);
+        shares = render(s, &bent, &target);
         out->pts = record->frame.pts;
         out->opaque = record->frame.opaque;
     }
@@ -482,11 +556,15 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
         memcpy(info->warp, map.m, sizeof map.m);
         info->bypass = bypass;
         info->residual = residual_px;
+        info->filled = shares.filled;
+        info->extended = shares.extended;
         info->readout = l1l2_shutter_filter_readout(s->filter);
         info->stage_ns[L1L2STAB_STAGE_WARP] = out ? l1l2_clock_ns() - start_ns : 0;
     }
     s->hurried -= s->hurried > 0;
     l1l2_frame_queue_drop_oldest(&s->queue);
+    if (s->finished && l1l2_frame_queue_count(&s->queue) == 0)
+        l1l2_frame_queue_release_kept(&s->queue);
     return L1L2STAB_OK;
 }
 

@@ -45,7 +45,7 @@ typedef struct L1L2StabContext {
     const AVClass *class;
 
     double lambda, crop_ratio;
-    int bypass, window, overlap, join, motion_model, rolling_shutter, interpolation, output_size;
+    int bypass, window, overlap, join, motion_model, rolling_shutter, interpolation, output_size, border, fill_frames;
 
     L1L2Stab *stab;        ///< NULL before the first frame
     L1L2StabConfig config; ///< of stab
@@ -101,6 +101,14 @@ static const AVOption l1l2stab_options[] = {
       .unit = "output_size" },
         CHOICE("input", "that of the input: the crop window is enlarged", L1L2STAB_OUTPUT_SIZE_INPUT, "output_size"),
         CHOICE("crop", "that of the crop window, in even numbers", L1L2STAB_OUTPUT_SIZE_CROP, "output_size"),
+    { "border", "what is shown where the stabilized frame reaches beyond the source", OFFSET(border),
+      AV_OPT_TYPE_INT, { .i64 = L1L2STAB_BORDER_CROP }, L1L2STAB_BORDER_CROP, L1L2STAB_BORDER_EXTEND, FLAGS,
+      .unit = "border" },
+        CHOICE("crop", "nothing: the crop window is shown", L1L2STAB_BORDER_CROP, "border"),
+        CHOICE("fill", "what the frames before and after show there", L1L2STAB_BORDER_FILL, "border"),
+        CHOICE("extend", "the frame mirrored at its sides", L1L2STAB_BORDER_EXTEND, "border"),
+    { "fill_frames", "with border=fill: how many frames away the frames are that fill it, at most",
+      OFFSET(fill_frames), AV_OPT_TYPE_INT, { .i64 = 30 }, 0, 120, FLAGS },
     { NULL }
 };
 
@@ -288,6 +296,8 @@ static void config_from_options(L1L2StabConfig *config, AVFilterContext *ctx)
     config->rolling_shutter = s->rolling_shutter;
     config->interpolation   = s->interpolation;
     config->output_size     = s->output_size;
+    config->border          = s->border;
+    config->fill_frames     = s->fill_frames;
     config->threads         = av_clip(ff_filter_get_nb_threads(ctx), 1, MAX_THREADS);
     config->frame_rate      = frame_rate(ctx->inputs[0]);
 }

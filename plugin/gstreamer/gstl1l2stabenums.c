@@ -58,6 +58,27 @@ gst_l1l2_stab_output_size_get_type (void)
 }
 
 GType
+gst_l1l2_stab_border_get_type (void)
+{
+  static gsize type = 0;
+  static const GEnumValue values[] = {
+    {L1L2STAB_BORDER_CROP,
+        "Nothing: the crop window is shown, enlarged to the output's size", "crop"},
+    {L1L2STAB_BORDER_FILL,
+          "What the frames before and after show there; the rest is extended",
+        "fill"},
+    {L1L2STAB_BORDER_EXTEND, "The frame is mirrored at its sides and softened",
+        "extend"},
+    {0, NULL, NULL}
+  };
+
+  if (g_once_init_enter (&type))
+    g_once_init_leave (&type,
+        g_enum_register_static ("GstL1L2StabBorder", values));
+  return type;
+}
+
+GType
 gst_l1l2_stab_motion_model_get_type (void)
 {
   static gsize type = 0;

@@ -17,6 +17,9 @@ GType gst_l1l2_stab_interpolation_get_type (void);
 #define GST_TYPE_L1L2_STAB_OUTPUT_SIZE (gst_l1l2_stab_output_size_get_type ())
 GType gst_l1l2_stab_output_size_get_type (void);
 
+#define GST_TYPE_L1L2_STAB_BORDER (gst_l1l2_stab_border_get_type ())
+GType gst_l1l2_stab_border_get_type (void);
+
 #define GST_TYPE_L1L2_STAB_MOTION_MODEL (gst_l1l2_stab_motion_model_get_type ())
 GType gst_l1l2_stab_motion_model_get_type (void);
 

@@ -57,6 +57,8 @@ count (GstL1L2StabReport * report, const L1L2StabInfo * info)
   report->n_lost += (info->flags & L1L2STAB_INFO_MOTION_LOST) != 0;
   report->n_aligned += info->model == L1L2STAB_MOTION_SOURCE_ALIGNMENT;
   report->n_bridged += (info->flags & L1L2STAB_INFO_BRIDGED) != 0;
+  report->filled_sum += info->filled;
+  report->extended_sum += info->extended;
   report->n_fallbacks += (info->flags & L1L2STAB_INFO_PATH_FALLBACK) != 0;
   report->n_early += (info->flags & L1L2STAB_INFO_EARLY) != 0;
   if (info->flags & L1L2STAB_INFO_PATH_START) {
@@ -144,6 +146,8 @@ gst_l1l2_stab_report_message (GstL1L2StabReport * report, GstBuffer * output,
       "bypass", G_TYPE_DOUBLE, info->bypass,
       "residual", G_TYPE_DOUBLE, info->residual,
       "readout", G_TYPE_DOUBLE, info->readout,
+      "filled", G_TYPE_DOUBLE, info->filled,
+      "extended", G_TYPE_DOUBLE, info->extended,
       "path-start", G_TYPE_BOOLEAN,
       (info->flags & L1L2STAB_INFO_PATH_START) != 0,
       "motion-lost", G_TYPE_BOOLEAN,
@@ -188,6 +192,10 @@ gst_l1l2_stab_report_stats (GstL1L2StabReport * report, gint window,
       "motion-lost", G_TYPE_UINT64, now.n_lost,
       "aligned", G_TYPE_UINT64, now.n_aligned,
       "bridged", G_TYPE_UINT64, now.n_bridged,
+      "filled-mean", G_TYPE_DOUBLE, now.n_out ? now.filled_sum / now.n_out :
+      0.0,
+      "extended-mean", G_TYPE_DOUBLE, now.n_out ?
+      now.extended_sum / now.n_out : 0.0,
       "cuts", G_TYPE_UINT64, now.n_cuts,
       "path-fallbacks", G_TYPE_UINT64, now.n_fallbacks,
       "early", G_TYPE_UINT64, now.n_early,

@@ -17,6 +17,7 @@ typedef struct
   GstElement *element;          /* its object lock guards the rest; not owned */
   guint64 n_in, n_out, n_dropped;       /* frames since the start */
   guint64 n_aligned, n_bridged;
+  gdouble filled_sum, extended_sum;     /* parts of output frames */
   guint64 n_lost, n_cuts, n_fallbacks, n_early; /* output frames with these marks */
   guint64 n_motions;            /* output frames that have a motion: all but the first of a path */
   gdouble quality_sum, quality_min;     /* of these motions */

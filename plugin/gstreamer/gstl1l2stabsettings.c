@@ -17,6 +17,8 @@ enum
   PROP_ROLLING_SHUTTER,
   PROP_INTERPOLATION,
   PROP_OUTPUT_SIZE,
+  PROP_BORDER,
+  PROP_FILL_FRAMES,
   PROP_THREADS,
   PROP_REGION,
   PROP_MASK,
@@ -114,6 +116,18 @@ install_picture (GObjectClass * klass, const L1L2StabConfig * defaults)
           "Size of the output: that of the input, or that of the crop window",
           GST_TYPE_L1L2_STAB_OUTPUT_SIZE, defaults->output_size,
           SETTING_FLAGS));
+  g_object_class_install_property (klass, PROP_BORDER,
+      g_param_spec_enum ("border", "Border",
+          "What is shown where the stabilized frame reaches beyond the source. "
+          "fill and extend show whole frames at their own scale; crop-ratio says "
+          "how much room the path has. They cannot be used with output-size=crop",
+          GST_TYPE_L1L2_STAB_BORDER, defaults->border, SETTING_FLAGS));
+  g_object_class_install_property (klass, PROP_FILL_FRAMES,
+      g_param_spec_int ("fill-frames", "Fill frames",
+          "With border=fill: frames that fill the border are at most so many "
+          "frames away, before or after. As many frames are held in addition to "
+          "the window, without delay",
+          0, 120, defaults->fill_frames, SETTING_FLAGS));
   g_object_class_install_property (klass, PROP_THREADS,
       g_param_spec_int ("threads", "Threads",
           "Number of threads that render a frame. 0 = the number of processor "
@@ -175,6 +189,7 @@ gst_l1l2_stab_settings_install (GObjectClass * klass)
   gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_ROLLING_SHUTTER, 0);
   gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_INTERPOLATION, 0);
   gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_OUTPUT_SIZE, 0);
+  gst_type_mark_as_plugin_api (GST_TYPE_L1L2_STAB_BORDER, 0);
 }
 
 void
@@ -222,6 +237,10 @@ find_field (GstL1L2StabSettings * settings, guint id)
       return &config->interpolation;
     case PROP_OUTPUT_SIZE:
       return &config->output_size;
+    case PROP_BORDER:
+      return &config->border;
+    case PROP_FILL_FRAMES:
+      return &config->fill_frames;
     case PROP_THREADS:
       return &config->threads;
     case PROP_REGION:

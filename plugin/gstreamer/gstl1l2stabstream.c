@@ -62,7 +62,8 @@ gst_l1l2_stab_stream_open (GstL1L2StabStream * stream,
 
   stream->in_info = *in_info;
   stream->out_info = *out_info;
-  stream->window = settings->window;
+  stream->most_held = settings->window +
+      (settings->border == L1L2STAB_BORDER_FILL ? settings->fill_frames : 0);
 
   gst_l1l2_stab_convert_config (&config, in_info);
   gst_l1l2_stab_convert_logger (&config.logger, &stream->log);
@@ -128,7 +129,7 @@ copy_scarce (GstL1L2StabStream * stream, HeldFrame * held)
 
   if (!stream->own_pool) {
     GST_INFO_OBJECT (stream->element, "upstream has too few buffers to hold "
-        "%u of them: frames are copied", stream->window);
+        "%u of them: frames are copied", stream->most_held);
     stream->own_pool = gst_l1l2_stab_alloc_own_pool (&stream->in_info);
   }
   if (!stream->own_pool)
@@ -151,7 +152,7 @@ held_frame_new (GstL1L2StabStream * stream, GstBuffer * buffer)
   gboolean mapped = FALSE;
 
   held->buffer = buffer;
-  if (gst_l1l2_stab_alloc_is_scarce (buffer, stream->window))
+  if (gst_l1l2_stab_alloc_is_scarce (buffer, stream->most_held))
     pixels = copy_scarce (stream, held);
   else
     pixels = gst_buffer_ref (buffer);
@@ -293,7 +294,7 @@ GstFlowReturn
 gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output,
     L1L2StabInfo * info)
 {
-  const HeldFrame *held = g_queue_peek_head (&stream->held);
+  HeldFrame *held = g_queue_peek_head (&stream->held);
   const GstL1L2StabMotion motion = held->motion;
   const GstClockTime stream_time = held->stream_time;
   L1L2StabFrame frame = { 0 };
@@ -306,11 +307,17 @@ gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output,
     return GST_FLOW_ERROR;
   }
   gst_l1l2_stab_convert_planes (&frame, &pixels);
+  /* The library may keep the frame, or release it. */
+  held->queue = NULL;
+  g_queue_unlink (&stream->held, &held->link);
   result = l1l2stab_pull (stream->stab, &frame, info);
   gst_video_frame_unmap (&pixels);
 
-  if (result != L1L2STAB_OK)
+  if (result != L1L2STAB_OK) {
+    held->queue = &stream->held;
+    g_queue_push_head_link (&stream->held, &held->link);
     return flow (stream, result);
+  }
   stream->n_out++;
   return gst_l1l2_stab_motion_files_write (&stream->files, stream_time,
       &motion, info) ? GST_FLOW_OK : GST_FLOW_ERROR;

@@ -23,11 +23,11 @@ typedef struct
   L1L2Stab *stab;               /* NULL: closed */
   GstVideoInfo in_info;
   GstVideoInfo out_info;
-  guint window;                 /* frames */
+  guint most_held;              /* frames: the window, and those that are kept to fill borders */
   GstBufferPool *own_pool;      /* for copies of the frames; NULL: upstream has enough buffers so far */
   guint64 n_in;                 /* number of frames that came in ... */
   guint64 n_out;                /* ... and of those among them that went out or were dropped */
-  GQueue held;                  /* of HeldFrame: the frames that the library holds, oldest first */
+  GQueue held;                  /* of HeldFrame: the frames that have to go out, oldest first */
   GQueue events;                /* of WaitingEvent: the events after held frames, oldest first */
 } GstL1L2StabStream;
 

@@ -84,7 +84,7 @@ static void run(const Clip *clip, int model, double ratio, Count *count)
     };
     const L1L2ShutterFilterConfig filter_cfg = {(L1L2StabRollingShutter)model, clip->width, clip->height, clip->width,
                                                 clip->height, WINDOW, NULL, {&rows[0].F, sizeof *rows, ROWS},
-                                                {filter_rows, sizeof *filter_rows, ROWS}, 1.0};
+                                                {filter_rows, sizeof *filter_rows, ROWS}, 1.0, false};
     L1L2Path *path;
     L1L2ShutterFilter *filter;
     L1L2WarpMesh plain;

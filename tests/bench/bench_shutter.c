@@ -169,7 +169,7 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
     };
     const L1L2ShutterFilterConfig filter_cfg = {model, WIDTH, HEIGHT, WIDTH, HEIGHT, WINDOW, NULL,
                                                 {&rows[0].F, sizeof *rows, RECORDS},
-                                                {filter_rows, sizeof *filter_rows, RECORDS}, 1.0};
+                                                {filter_rows, sizeof *filter_rows, RECORDS}, 1.0, false};
     L1L2Motion *motion = NULL;
     L1L2Path *path = NULL;
     L1L2ShutterFilter *filter = NULL;

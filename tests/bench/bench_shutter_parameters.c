@@ -233,7 +233,8 @@ static void run_clip(const Clip *clip, const Recording *recording, const L1L2Shu
     static L1L2Mat motions[RECORDS];
     static L1L2ShutterFrame rows[RECORDS];
     const L1L2ShutterFilterConfig cfg = {clip->model, WIDTH, HEIGHT, WIDTH, HEIGHT, window, parameters,
-                                         {motions, sizeof *motions, RECORDS}, {rows, sizeof *rows, RECORDS}, 1.0};
+                                         {motions, sizeof *motions, RECORDS}, {rows, sizeof *rows, RECORDS}, 1.0,
+                                         false};
     L1L2ShutterFilter *filter;
     if (l1l2_shutter_filter_create(&filter, &cfg) != L1L2STAB_OK)
         exit(EXIT_FAILURE);
@@ -290,7 +291,7 @@ static void run_edge(const L1L2ShutterParameters *parameters, double result[2])
     if (!l1l2_warp_mesh_init(&mesh, WIDTH, HEIGHT) || !l1l2_warp_mesh_init(&plain, WIDTH, HEIGHT))
         exit(EXIT_FAILURE);
     l1l2_warp_mesh_set(&plain, &map);
-    l1l2_shutter_mesh_set(&mesh, &map, &model, &residual, &(L1L2ShutterSource){WIDTH, HEIGHT, 1.0});
+    l1l2_shutter_mesh_set(&mesh, &map, &model, &residual, &(L1L2ShutterSource){WIDTH, HEIGHT, 1.0, false});
     double lost = 0.0, all = 0.0, compression = 1.0;
     for (int i = 0; i < mesh.columns * mesh.rows; i++) {
         const L1L2Point u = {plain.node[i].x * unit, plain.node[i].y * unit};
@@ -402,7 +403,8 @@ static void filter_clip(const RealClip *clip, const L1L2ShutterParameters *param
     static L1L2Mat motions[RECORDS];
     static L1L2ShutterFrame rows[RECORDS];
     const L1L2ShutterFilterConfig cfg = {kind, clip->width, clip->height, clip->width, clip->height, WINDOW, parameters,
-                                         {motions, sizeof *motions, RECORDS}, {rows, sizeof *rows, RECORDS}, 1.0};
+                                         {motions, sizeof *motions, RECORDS}, {rows, sizeof *rows, RECORDS}, 1.0,
+                                         false};
     static L1L2ShutterGate gate;
     L1L2ShutterFilter *filter;
     if (l1l2_shutter_filter_create(&filter, &cfg) != L1L2STAB_OK)

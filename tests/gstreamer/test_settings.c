@@ -18,14 +18,16 @@ GST_START_TEST (the_defaults_are_the_librarys)
   GstElement *element = gst_element_factory_make ("l1l2stab", NULL);
   L1L2StabConfig config;
   gdouble lambda, crop_ratio;
-  gint window, overlap, join, model, shutter, interpolation, output_size, threads;
+  gint window, overlap, join, model, shutter, interpolation, output_size, border,
+      fill_frames, threads;
   gboolean qos, bypass, post_messages;
   gchar *motion_in, *motion_out, *region, *mask;
 
   init_config (&config);
   g_object_get (element, "lambda", &lambda, "crop-ratio", &crop_ratio,
       "window", &window, "overlap", &overlap, "join", &join, "interpolation",
-      &interpolation, "output-size", &output_size, "threads", &threads, "qos",
+      &interpolation, "output-size", &output_size,
+      "border", &border, "fill-frames", &fill_frames, "threads", &threads, "qos",
       &qos, "motion-model", &model,
       "rolling-shutter", &shutter, "bypass", &bypass, "post-messages",
       &post_messages, "motion-in", &motion_in, "motion-out", &motion_out,
@@ -37,6 +39,8 @@ GST_START_TEST (the_defaults_are_the_librarys)
   fail_unless_equals_int (join, config.join);
   fail_unless_equals_int (interpolation, config.interpolation);
   fail_unless_equals_int (output_size, config.output_size);
+  fail_unless_equals_int (border, config.border);
+  fail_unless_equals_int (fill_frames, config.fill_frames);
   fail_unless_equals_int (threads, config.threads);
   fail_unless_equals_int (model, config.motion_model);
   fail_unless_equals_int (shutter, config.rolling_shutter);

@@ -17,10 +17,11 @@ SOURCE = 'lib/src'
 
 # The rule of each folder of lib/src: the folders that it may include besides itself. '.' is lib/src, the stabilizer.
 MAY_INCLUDE = {
-    '.': {'motion', 'rolling_shutter', 'path', 'warp', 'image', 'common'},
+    '.': {'border', 'motion', 'rolling_shutter', 'path', 'warp', 'image', 'common'},
     'motion': {'rolling_shutter', 'fit', 'image', 'common'},
     'rolling_shutter': {'fit', 'warp', 'common'},
     'path': {'common'},
+    'border': {'warp', 'image', 'common'},
     'warp': {'image', 'common'},
     'fit': {'common'},
     'image': {'common'},

@@ -211,7 +211,9 @@ static Fault run(int threads)
     cfg.window = 6, cfg.overlap = 3;
     cfg.solver = L1L2STAB_SOLVER_CHECKED; /* OSQP works on every window */
     cfg.threads = threads;
-    cfg.region[2] = 0.75; /* it takes memory */
+    cfg.region[2] = 0.75; /* it takes memory, as the border does */
+    cfg.border = L1L2STAB_BORDER_FILL;
+    cfg.fill_frames = 4;
     const L1L2StabResult result = l1l2stab_create(&s, &cfg);
     if (result != L1L2STAB_OK)
         return result == L1L2STAB_ERR_NOMEM && !s ? GOOD : WRONG_CODE;

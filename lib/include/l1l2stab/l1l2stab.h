@@ -188,6 +188,14 @@ typedef enum L1L2StabOutputSize {
     L1L2STAB_OUTPUT_SIZE_CROP = 1   /* the crop window's own size, rounded down to even numbers: no zoom */
 } L1L2StabOutputSize;
 
+/* What is shown where the stabilized frame reaches beyond the source frame. */
+typedef enum L1L2StabBorder {
+    L1L2STAB_BORDER_CROP = 0,  /* it does not: what is shown is the crop window, zoomed to the output's size */
+    L1L2STAB_BORDER_FILL = 1,  /* the whole frame is shown at its own scale, and neighboring frames fill what it lacks.
+                                * What no neighbor shows is extended. crop_ratio says how much room the path has */
+    L1L2STAB_BORDER_EXTEND = 2 /* the same without neighbors: the frame is mirrored at its sides, and softened */
+} L1L2StabBorder;
+
 /* Which solver solves eq. (4): for tests and measurements. */
 typedef enum L1L2StabSolver {
     L1L2STAB_SOLVER_AUTO = 0,      /* the predictor; OSQP checks it where a window emits 8 frames or more */
@@ -247,6 +255,9 @@ typedef struct L1L2StabConfig {
                                     * l1l2stab_create() only. NULL: no mask, the default */
     ptrdiff_t mask_stride;         /* bytes from a row to the next, at least mask_width; of the mask, if there is one */
     int mask_width, mask_height;   /* pixels, [1, 16384]; ditto. Any size and aspect: it covers the whole frame */
+    L1L2StabBorder border;         /* default CROP. FILL and EXTEND need output_size INPUT */
+    int fill_frames;               /* with FILL: neighbors are at most so many frames away, either way, [0, 120],
+                                    * default 30. So many frames are kept after they have been pulled */
 } L1L2StabConfig;
 
 /* A new path starts at this frame: no frame before it belongs to the same shot. */
@@ -271,8 +282,9 @@ typedef struct L1L2StabFrame {
      * length. */
     int64_t pts;
     void *opaque;        /* the caller's; pull() returns it with the same frame */
-    /* push() only: called exactly once, by the pull, reset or free that no longer needs the pixels. Never called if
-     * push() did not return OK. Must not call the library with this instance. May be NULL. */
+    /* push() only: called exactly once, by the pull, reset or free that no longer needs the pixels. With
+     * L1L2STAB_BORDER_FILL that is `fill_frames` pulls later, or at the end of the stream. Never called if push() did
+     * not return OK. Must not call the library with this instance. May be NULL. */
     void (*release)(void *opaque);
     unsigned flags;      /* push() only: L1L2STAB_FRAME_* */
     /* push() only: the frame's F_t, where the caller knows it; NULL: it is measured. Nine numbers as at the top of this
@@ -343,7 +355,9 @@ typedef struct L1L2StabInfo {
     double residual;         /* rolling-shutter correction: the longest distance by which it moved a sample, pixels */
     double readout;          /* time from the first row to the last, frames, as estimated; < 0: bottom row first;
                               * 0: not known */
-    uint8_t reserved[256];   /* 0; later versions put further fields here and keep the struct's size */
+    double filled;           /* with L1L2STAB_BORDER_FILL: the part of the output that neighbors gave, [0, 1] */
+    double extended;         /* with FILL and EXTEND: the part that no frame shows and that was extended, [0, 1] */
+    uint8_t reserved[240];   /* 0; later versions put further fields here and keep the struct's size */
 } L1L2StabInfo;
 
 /* Fills *cfg with the defaults. Pass sizeof *cfg, so that a program built against an older header still works. */
@@ -388,12 +402,18 @@ L1L2STAB_API L1L2StabResult l1l2stab_set_bypass(L1L2Stab *s, int bypass);
  * nothing is set, and the result is that of pull(). */
 L1L2STAB_API L1L2StabResult l1l2stab_peek(const L1L2Stab *s, int64_t *pts, void **opaque);
 
-/* Renders the oldest frame that is ready into the caller's planes, and releases it.
- * out: struct_size, data and stride are read, pts and opaque are set (opaque of a frame with a release function has
- * been released by then); NULL: nothing is rendered, for callers who want the numbers alone. info: may be NULL.
+/* Renders the oldest frame that is ready into the caller's planes, and releases it, or with L1L2STAB_BORDER_FILL the
+ * one `fill_frames` before it.
+ * out: struct_size, data and stride are read, pts and opaque are set (opaque of a frame that was released is no longer
+ * valid); NULL: nothing is rendered, for callers who want the numbers alone. info: may be NULL.
  * AGAIN: push more, or finish. EOS: finished, and every frame has been pulled. An error is the caller's alone (out
  * lacks a plane, or the frame was pushed without pixels): the frame remains queued. */
 L1L2STAB_API L1L2STAB_MUST_CHECK L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info);
+
+/* Writes to `map` who gave each pixel of the frame that was pulled last with `out`: one byte a pixel, `stride` bytes
+ * from row to row. 0: the frame itself; 128 + k: the frame k frames later (before, if k < 0); 255: it was extended.
+ * ERR_STATE: no frame was rendered since create or reset, or border is CROP. */
+L1L2STAB_API L1L2StabResult l1l2stab_border_map(const L1L2Stab *s, uint8_t *map, ptrdiff_t stride);
 
 /* Ends the input: held frames can be pulled until EOS, and reset() makes push() possible again. Always OK unless s is
  * NULL; calling it again does nothing. */

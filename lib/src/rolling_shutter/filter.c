@@ -292,7 +292,8 @@ const L1L2WarpMesh *l1l2_shutter_filter_mesh(L1L2ShutterFilter *filter, const L1
     L1L2ShutterResidual residual = filter->emitted;
     for (int p = 0; p < L1L2_SHUTTER_SIZE; p++)
         residual.p[p] *= part;
-    const L1L2ShutterSource source = {filter->cfg.in_width, filter->cfg.in_height, filter->cfg.pixel_aspect};
+    const L1L2ShutterSource source = {filter->cfg.in_width, filter->cfg.in_height, filter->cfg.pixel_aspect,
+                                      filter->cfg.may_leave};
     const double reach = l1l2_shutter_mesh_set(&filter->mesh, map, &filter->model, &residual, &source);
     if (!(reach > 0.0))
         return NULL;

@@ -49,6 +49,7 @@ typedef struct L1L2ShutterFilterConfig {
     L1L2FrameColumn motions; /* of L1L2Mat: the motion F of each frame, unit the frame's diagonal; only read */
     L1L2FrameColumn frames;  /* of L1L2ShutterFrame */
     double pixel_aspect;     /* a source pixel's width by its height as it is shown; 0: 1 */
+    bool may_leave;          /* the warp may read outside the source frame: its border is filled afterwards */
 } L1L2ShutterFilterConfig;
 
 /* Creates a filter; free it with l1l2_shutter_filter_free(). *out is NULL on error (NOMEM), and with model NONE, which

@@ -127,6 +127,8 @@ double l1l2_shutter_mesh_set(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2S
         extend(&y, to.y);
         mesh->node[i] = to;
     }
+    if (source->may_leave)
+        return longest;
     for (int i = 0; i < count; i++)
         mesh->node[i] = (L1L2Point){compress(mesh->node[i].x, &x, 0.5 * width, zone),
                                     compress(mesh->node[i].y, &y, 0.5 * height, zone)};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Algorithm 1, step 4, in the picture: B_t and a frame's rolling-shutter residual as one mesh of source positions, none
- * of which is outside the source frame.
+ * of which is outside the source frame, unless they may be.
  *
  * Where the residual would reach across a side of the source, the outer eighth of the picture along that side is
  * compressed until it ends on the side. G2011 has no such step; fading the residual until it fits would give up the
@@ -18,6 +18,7 @@
 typedef struct L1L2ShutterSource {
     int width, height;   /* pixels */
     double pixel_aspect; /* a pixel's width by its height as it is shown, > 0 */
+    bool may_leave;      /* positions may be outside the source: they are not compressed */
 } L1L2ShutterSource;
 
 /* Sets the nodes of a mesh that was initialized for the output frame's size. map: output pixel -> source pixel without

@@ -33,7 +33,6 @@ typedef struct PlaneLayout {
     int src_width, src_height; /* samples */
     int width, height;         /* of the output, samples */
     int sample_bytes;          /* of all components of a sample */
-    int bands;
     L1L2WarpScanlineRun *scanline_run; /* NULL: samples of this depth are not weighed along scanlines */
     L1L2WarpDirectRun *direct_run;
 } PlaneLayout;
@@ -57,6 +56,8 @@ typedef struct PlaneJob {
     L1L2WarpPlane src;
     uint8_t *dst;
     ptrdiff_t dst_stride;
+    L1L2WarpRect part;      /* samples to render */
+    int bands;
     bool copies;            /* output sample (u, v) is source sample (u + step_x, v + step_y) */
     int step_x, step_y;
 } PlaneJob;
@@ -80,16 +81,14 @@ static PlaneLayout lay_out_plane(const L1L2WarpConfig *cfg, const L1L2WarpFuncti
     const L1L2FormatInfo *format = cfg->format;
     const int sub_x = format->plane[plane].log2_sub_x, sub_y = format->plane[plane].log2_sub_y;
     const int components = format->plane[plane].components;
-    const int height = l1l2_image_plane_size(cfg->out_height, sub_y);
     return (PlaneLayout){
         .src_grid = l1l2_warp_grid(format, plane, cfg->chroma_site, cfg->in_width, cfg->in_height),
         .dst_grid = l1l2_warp_grid(format, plane, cfg->chroma_site, cfg->out_width, cfg->out_height),
         .src_width = l1l2_image_plane_size(cfg->in_width, sub_x),
         .src_height = l1l2_image_plane_size(cfg->in_height, sub_y),
         .width = l1l2_image_plane_size(cfg->out_width, sub_x),
-        .height = height,
+        .height = l1l2_image_plane_size(cfg->out_height, sub_y),
         .sample_bytes = components * l1l2_image_format_bytes(format),
-        .bands = (height + BAND_ROWS - 1) / BAND_ROWS,
         .scanline_run = format->depth == 8 ? l1l2_warp_scanline_run(functions, taps, components) : NULL,
         .direct_run = l1l2_warp_direct_run(functions, taps, components, format->depth),
     };
@@ -162,18 +161,18 @@ static void repeat(uint8_t *dst, const uint8_t *sample, int count, int sample_by
 }
 
 /* Copies samples. Weighing in phase 0 gives the same, except that it drops bits outside a component's depth. */
-static void copy_band(const PlaneJob *job, int band)
+static void copy_band(const PlaneJob *job, int first, int end)
 {
     const L1L2WarpPlane *src = &job->src;
-    const int bytes = job->layout->sample_bytes, width = job->layout->width, height = job->layout->height;
-    const int left = clamp(-job->step_x, 0, width), right = clamp(src->width - job->step_x, left, width);
-    for (int v = band * BAND_ROWS; v < height && v < (band + 1) * BAND_ROWS; v++) {
+    const int bytes = job->layout->sample_bytes, begin = job->part.left, stop = job->part.right;
+    const int left = clamp(-job->step_x, begin, stop), right = clamp(src->width - job->step_x, left, stop);
+    for (int v = first; v < end; v++) {
         const uint8_t *from = src->data + clamp(v + job->step_y, 0, src->height - 1) * src->stride;
         uint8_t *to = job->dst + v * job->dst_stride;
-        repeat(to, from, left, bytes);
+        repeat(to + begin * bytes, from, left - begin, bytes);
         if (right > left)
             memcpy(to + left * bytes, from + (left + job->step_x) * bytes, (size_t)((right - left) * bytes));
-        repeat(to + right * bytes, from + (src->width - 1) * bytes, width - right, bytes);
+        repeat(to + right * bytes, from + (src->width - 1) * bytes, stop - right, bytes);
     }
 }
 
@@ -234,15 +233,13 @@ static void render_run(const PlaneJob *job, const L1L2WarpCells *cells, int u, i
 
 /* Renders a band tile by tile. A tile is only so wide that the source rows which a turned output row reads fit the
  * first-level cache. The cells of its runs are the same for all rows. */
-static void render_band(const PlaneJob *job, int band)
+static void render_band(const PlaneJob *job, int first, int end)
 {
-    const int width = job->layout->width, height = job->layout->height;
-    const int first = band * BAND_ROWS, end = first + BAND_ROWS < height ? first + BAND_ROWS : height;
-    for (int tile = 0; tile < width; tile += TILE_RUNS * L1L2_WARP_RUN_SAMPLES) {
+    for (int tile = job->part.left; tile < job->part.right; tile += TILE_RUNS * L1L2_WARP_RUN_SAMPLES) {
         L1L2WarpCells cells[TILE_RUNS];
         int from[TILE_RUNS + 1] = {tile}, runs = 0;
-        for (; runs < TILE_RUNS && from[runs] < width; runs++) {
-            const int left = width - from[runs];
+        for (; runs < TILE_RUNS && from[runs] < job->part.right; runs++) {
+            const int left = job->part.right - from[runs];
             from[runs + 1] = from[runs] + (left < L1L2_WARP_RUN_SAMPLES ? left : L1L2_WARP_RUN_SAMPLES);
             if (job->mesh.mesh)
                 cells[runs] = l1l2_warp_mesh_cells(&job->mesh, from[runs], from[runs + 1] - from[runs]);
@@ -258,15 +255,24 @@ static void render_part(void *context, int index)
 {
     const FrameJob *job = context;
     const PlaneJob *plane = job->plane;
-    for (; index >= plane->layout->bands; plane++)
-        index -= plane->layout->bands;
+    for (; index >= plane->bands; plane++)
+        index -= plane->bands;
+    const int first = plane->part.top + index * BAND_ROWS, bottom = plane->part.bottom;
+    const int end = first + BAND_ROWS < bottom ? first + BAND_ROWS : bottom;
     if (plane->copies)
-        copy_band(plane, index);
+        copy_band(plane, first, end);
     else
-        render_band(plane, index);
+        render_band(plane, first, end);
 }
 
-static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4],
+L1L2WarpRect l1l2_warp_rect_samples(const L1L2WarpRect *pixels, int log2_sub_x, int log2_sub_y)
+{
+    return (L1L2WarpRect){pixels->left >> log2_sub_x, pixels->top >> log2_sub_y,
+                          l1l2_image_plane_size(pixels->right, log2_sub_x),
+                          l1l2_image_plane_size(pixels->bottom, log2_sub_y)};
+}
+
+static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const L1L2WarpRect *part, const uint8_t *const src[4],
                           const ptrdiff_t src_stride[4], uint8_t *const dst[4], const ptrdiff_t dst_stride[4])
 {
     const L1L2FormatInfo *format = w->cfg.format;
@@ -283,22 +289,31 @@ static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *co
             .src = {src[i], src_stride[i], layout->src_width, layout->src_height, format->depth, format->shift},
             .dst = dst[i],
             .dst_stride = dst_stride[i],
+            .part = l1l2_warp_rect_samples(part, format->plane[i].log2_sub_x, format->plane[i].log2_sub_y),
         };
+        job.plane[i].bands = (job.plane[i].part.bottom - job.plane[i].part.top + BAND_ROWS - 1) / BAND_ROWS;
         if (!map->mesh)
             find_step(&job.plane[i]);
-        bands += layout->bands;
+        bands += job.plane[i].bands;
     }
     l1l2_pool_run(w->cfg.pool, bands, render_part, &job);
+}
+
+void l1l2_warp_render_part(L1L2Warp *w, const L1L2WarpMap *map, const L1L2WarpRect *part, const uint8_t *const src[4],
+                           const ptrdiff_t src_stride[4], uint8_t *const dst[4], const ptrdiff_t dst_stride[4])
+{
+    if (!w->packed) {
+        render_planes(w, map, part, src, src_stride, dst, dst_stride);
+        return;
+    }
+    l1l2_warp_packed422_split(w->cfg.pool, w->packed, src[0], src_stride[0], &w->in);
+    render_planes(w, map, part, (const uint8_t *const *)w->in.data, w->in.stride, w->out.data, w->out.stride);
+    l1l2_warp_packed422_merge(w->cfg.pool, w->packed, &w->out, dst[0], dst_stride[0]);
 }
 
 void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
                       uint8_t *const dst[4], const ptrdiff_t dst_stride[4])
 {
-    if (!w->packed) {
-        render_planes(w, map, src, src_stride, dst, dst_stride);
-        return;
-    }
-    l1l2_warp_packed422_split(w->cfg.pool, w->packed, src[0], src_stride[0], &w->in);
-    render_planes(w, map, (const uint8_t *const *)w->in.data, w->in.stride, w->out.data, w->out.stride);
-    l1l2_warp_packed422_merge(w->cfg.pool, w->packed, &w->out, dst[0], dst_stride[0]);
+    const L1L2WarpRect all = {0, 0, w->cfg.out_width, w->cfg.out_height};
+    l1l2_warp_render_part(w, map, &all, src, src_stride, dst, dst_stride);
 }

@@ -49,6 +49,19 @@ void l1l2_warp_free(L1L2Warp *w);
 void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
                       uint8_t *const dst[4], const ptrdiff_t dst_stride[4]);
 
+/* A part of a frame: columns left .. right - 1 and rows top .. bottom - 1. */
+typedef struct L1L2WarpRect {
+    int left, top, right, bottom;
+} L1L2WarpRect;
+
+/* The samples of a plane that cover these pixels. */
+L1L2WarpRect l1l2_warp_rect_samples(const L1L2WarpRect *pixels, int log2_sub_x, int log2_sub_y);
+
+/* The same for a part of the output, in pixels within it. dst is the whole frame; what lies outside the part is left as
+ * it is, but for packed 4:2:2, where it is undefined. */
+void l1l2_warp_render_part(L1L2Warp *w, const L1L2WarpMap *map, const L1L2WarpRect *part, const uint8_t *const src[4],
+                           const ptrdiff_t src_stride[4], uint8_t *const dst[4], const ptrdiff_t dst_stride[4]);
+
 /* The instruction set of the inner loops on this processor: "avx2", or "none" for plain C. */
 const char *l1l2_warp_simd(void);
 

@@ -10,7 +10,7 @@
 enum { WIDTH = 640, HEIGHT = 360, WINDOW = 60 };
 static const double pi = 3.14159265358979;
 static const double diagonal_px = 734.30239;
-static const L1L2ShutterSource source = {WIDTH, HEIGHT, 1.0};
+static const L1L2ShutterSource source = {WIDTH, HEIGHT, 1.0, false};
 
 /* The records of the filter's frames. A test has only one filter at a time. */
 static L1L2Mat motions[WINDOW + L1L2_SHUTTER_FILTER_PAST];

@@ -100,7 +100,8 @@ static void find_positions(const Plane *plane, const L1L2WarpMesh *mesh, int u, 
     for (int i = 0; i < count; i++) {
         const int32_t x = at->x[i] + half < right - at->x[i] ? at->x[i] + half : right - at->x[i];
         const int32_t y = at->y[i] + half < bottom - at->y[i] ? at->y[i] + half : bottom - at->y[i];
-        at->depth[i] = fminf((float)x * to_x, (float)y * to_y);
+        const float across = (float)x * to_x, down = (float)y * to_y;
+        at->depth[i] = across < down ? across : down;
     }
 }
 

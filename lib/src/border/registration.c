@@ -10,12 +10,13 @@
 enum {
     LEVELS = 2,          /* the picture, and half its size */
     PATCH = 10,          /* a patch reaches this far from its node, pixels of its level */
+    PIXELS = (2 * PATCH + 1) * (2 * PATCH + 1),
     ITERATIONS = 5,
     REACH = 8            /* a displacement is at most so many pixels of its level */
 };
 
 static const double prior = 20.0;         /* squared levels: as the slopes of a nearly flat patch */
-static const double settled_px = 0.02;
+static const double settled_px = 0.05;
 static const double agrees = 0.6, disagrees = 0.9; /* what is left of a patch's contrast: is trusted, is not shown */
 static const double noise_levels = 3.0;
 
@@ -76,22 +77,6 @@ void l1l2_border_registration_free(L1L2BorderRegistration *r)
     l1l2_mem_free(r->half[1]);
     l1l2_mem_free(r->node);
     l1l2_mem_free(r);
-}
-
-/* Bilinear; < 0 where a pixel that it needs is outside or unknown. */
-static float level_at(const float *picture, int width, int height, double x, double y)
-{
-    if (!(x >= 0.0 && y >= 0.0 && x <= width - 1 && y <= height - 1))
-        return -1.0f;
-    const int left = x >= width - 1 ? width - 2 : (int)x, top = y >= height - 1 ? height - 2 : (int)y;
-    if (left < 0 || top < 0)
-        return -1.0f;
-    const float fx = (float)(x - left), fy = (float)(y - top);
-    const float *p = picture + top * width + left;
-    if (p[0] < 0.0f || p[1] < 0.0f || p[width] < 0.0f || p[width + 1] < 0.0f)
-        return -1.0f;
-    const float above = p[0] + fx * (p[1] - p[0]), below = p[width] + fx * (p[width + 1] - p[width]);
-    return above + fy * (below - above);
 }
 
 static float gray_at(const L1L2BorderGray *gray, int width, int height, double x, double y)
@@ -167,13 +152,14 @@ static void halve(const float *picture, int width, int height, float *half)
 /* One patch of the own picture: its levels and slopes, row by row. */
 typedef struct Patch {
     int count;
-    float level[(2 * PATCH + 1) * (2 * PATCH + 1)];
-    float slope_x[(2 * PATCH + 1) * (2 * PATCH + 1)];
-    float slope_y[(2 * PATCH + 1) * (2 * PATCH + 1)];
-    int16_t x[(2 * PATCH + 1) * (2 * PATCH + 1)], y[(2 * PATCH + 1) * (2 * PATCH + 1)];
+    float level[PIXELS];
+    float slope_x[PIXELS];
+    float slope_y[PIXELS];
+    int16_t x[PIXELS], y[PIXELS];
     double contrast; /* mean distance from the mean level */
 } Patch;
 
+/* Takes every second pixel, as on a chessboard: all of them give the same displacements in twice the time. */
 static void take_patch(const Level *level, double center_x, double center_y, Patch *patch)
 {
     const int cx = (int)lround(center_x), cy = (int)lround(center_y), width = level->width;
@@ -181,7 +167,7 @@ static void take_patch(const Level *level, double center_x, double center_y, Pat
     double sum = 0.0;
     for (int y = cy - PATCH; y <= cy + PATCH; y++)
         for (int x = cx - PATCH; x <= cx + PATCH; x++) {
-            if (x < 1 || y < 1 || x > width - 2 || y > level->height - 2)
+            if (((x + y) & 1) || x < 1 || y < 1 || x > width - 2 || y > level->height - 2)
                 continue;
             const float *p = level->own + y * width + x;
             if (p[0] < 0.0f || p[-1] < 0.0f || p[1] < 0.0f || p[-width] < 0.0f || p[width] < 0.0f)
@@ -201,50 +187,58 @@ static void take_patch(const Level *level, double center_x, double center_y, Pat
     patch->contrast /= patch->count ? patch->count : 1;
 }
 
-/* The differences N(x + u) - O(x) without their mean; a pixel that N does not show has none (NaN). Returns how many
- * there are; *left: their mean size. */
-static int differences(const Level *level, const Patch *patch, L1L2Point shift, float *e, double *left)
+/* The differences N(x + u) - O(x) without their mean. All pixels of a patch are displaced alike, so they share the
+ * weights of their bilinear samples. A pixel that N does not show has no difference: `seen` says which ones have. Returns
+ * how many there are; *left: their mean size. */
+static int differences(const Level *level, const Patch *patch, L1L2Point shift, float *e, bool *seen, double *left)
 {
+    const int width = level->width, dx = (int)floor(shift.x), dy = (int)floor(shift.y);
+    const float fx = (float)(shift.x - dx), fy = (float)(shift.y - dy);
     int count = 0;
     double sum = 0.0, size = 0.0;
     for (int n = 0; n < patch->count; n++) {
-        const float seen = level_at(level->neighbor, level->width, level->height, patch->x[n] + shift.x,
-                                    patch->y[n] + shift.y);
-        e[n] = seen < 0.0f ? NAN : seen - patch->level[n];
-        if (seen < 0.0f)
+        const int x = patch->x[n] + dx, y = patch->y[n] + dy;
+        seen[n] = x >= 0 && y >= 0 && x < width - 1 && y < level->height - 1;
+        if (!seen[n])
+            continue;
+        const float *p = level->neighbor + y * width + x;
+        seen[n] = p[0] >= 0.0f && p[1] >= 0.0f && p[width] >= 0.0f && p[width + 1] >= 0.0f;
+        const float above = p[0] + fx * (p[1] - p[0]), below = p[width] + fx * (p[width + 1] - p[width]);
+        e[n] = above + fy * (below - above) - patch->level[n];
+        if (!seen[n])
             continue;
         sum += e[n];
         count++;
     }
-    const double mean = count ? sum / count : 0.0;
-    for (int n = 0; n < patch->count; n++) {
-        e[n] -= (float)mean;
-        if (!isnan(e[n]))
-            size += fabsf(e[n]);
-    }
+    const float mean = count ? (float)(sum / count) : 0.0f;
+    for (int n = 0; n < patch->count; n++)
+        if (seen[n]) {
+            e[n] -= mean;
+            size += e[n] < 0.0f ? -e[n] : e[n];
+        }
     *left = count ? size / count : 0.0;
     return count;
 }
 
 /* One step of Gauss-Newton with weights 1 / (1 + (e / s)^2), s half more than the mean difference. False: the patch has
  * no slopes. */
-static bool step(const Patch *patch, const float *e, double left, Node *node, L1L2Point *by)
+static bool step(const Patch *patch, const float *e, const bool *seen, double left, Node *node, L1L2Point *by)
 {
-    const double scale = 1.0 / fmax(1.5 * left, 1.0);
-    double bx = 0.0, by_ = 0.0;
-    node->xx = node->xy = node->yy = 0.0;
+    const float scale = 1.0f / (float)fmax(1.5 * left, 1.0);
+    float xx = 0.0f, xy = 0.0f, yy = 0.0f, bx = 0.0f, by_ = 0.0f;
     for (int n = 0; n < patch->count; n++) {
-        if (isnan(e[n]))
+        if (!seen[n])
             continue;
-        const double z = e[n] * scale, w = 1.0 / (1.0 + z * z), gx = patch->slope_x[n], gy = patch->slope_y[n];
-        node->xx += w * gx * gx;
-        node->xy += w * gx * gy;
-        node->yy += w * gy * gy;
-        bx += w * gx * e[n];
-        by_ += w * gy * e[n];
+        const float z = e[n] * scale, w = 1.0f / (1.0f + z * z), gx = w * patch->slope_x[n], gy = w * patch->slope_y[n];
+        xx += gx * patch->slope_x[n];
+        xy += gx * patch->slope_y[n];
+        yy += gy * patch->slope_y[n];
+        bx += gx * e[n];
+        by_ += gy * e[n];
     }
-    const double xx = node->xx + prior, yy = node->yy + prior, det = xx * yy - node->xy * node->xy;
-    *by = (L1L2Point){-(yy * bx - node->xy * by_) / det, -(xx * by_ - node->xy * bx) / det};
+    node->xx = xx, node->xy = xy, node->yy = yy;
+    const double a = xx + prior, c = yy + prior, det = a * c - node->xy * node->xy;
+    *by = (L1L2Point){-(c * bx - node->xy * by_) / det, -(a * by_ - node->xy * bx) / det};
     return det > 0.0;
 }
 
@@ -252,31 +246,32 @@ static bool step(const Patch *patch, const float *e, double left, Node *node, L1
 static void register_patch(const Level *level, double x, double y, Node *node)
 {
     Patch patch;
-    float e[(2 * PATCH + 1) * (2 * PATCH + 1)];
+    float e[PIXELS];
+    bool seen[PIXELS];
     const L1L2Point start = node->shift;
     L1L2Point by;
     double left, left_at_start;
     node->known = false;
     take_patch(level, x, y, &patch);
-    const int enough = (2 * PATCH + 1) * (2 * PATCH + 1) / 4;
-    if (patch.count < enough || differences(level, &patch, start, e, &left_at_start) < enough)
+    const int enough = PIXELS / 8;
+    if (patch.count < enough || differences(level, &patch, start, e, seen, &left_at_start) < enough)
         return;
     left = left_at_start;
     for (int i = 0; i < ITERATIONS; i++) {
-        if (!step(&patch, e, left, node, &by))
+        if (!step(&patch, e, seen, left, node, &by))
             return;
         node->shift.x += by.x;
         node->shift.y += by.y;
         if (fabs(node->shift.x - start.x) > REACH || fabs(node->shift.y - start.y) > REACH)
             break;
-        if (differences(level, &patch, node->shift, e, &left) < enough)
+        if (differences(level, &patch, node->shift, e, seen, &left) < enough)
             break;
         if (hypot(by.x, by.y) < settled_px)
             break;
     }
     if (!(left < left_at_start) || fabs(node->shift.x - start.x) > REACH || fabs(node->shift.y - start.y) > REACH) {
         node->shift = start;
-        differences(level, &patch, start, e, &left);
+        differences(level, &patch, start, e, seen, &left);
     }
     node->left = left / (patch.contrast + noise_levels);
     /* What does not match after all says little. */

@@ -3,6 +3,7 @@
 """Checks the layers by the #include lines: check_layers.py TREE | check_layers.py --self-test
 
     plugin, samples -> public header -> lib/src -> motion -> rolling_shutter -> fit, warp -> image -> common
+                                            \\-> border -----------------------> warp
                                             \\-> path ---------------------------------------> common
 
 Each folder of lib/src has one rule: the folders whose headers it may include. No rule points back. OpenCV, OSQP,

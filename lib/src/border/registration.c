@@ -188,8 +188,8 @@ static void take_patch(const Level *level, double center_x, double center_y, Pat
 }
 
 /* The differences N(x + u) - O(x) without their mean. All pixels of a patch are displaced alike, so they share the
- * weights of their bilinear samples. A pixel that N does not show has no difference: `seen` says which ones have. Returns
- * how many there are; *left: their mean size. */
+ * weights of their bilinear samples. A pixel that N does not show has no difference: `seen` says which ones have.
+ * Returns how many there are; *left: their mean size. */
 static int differences(const Level *level, const Patch *patch, L1L2Point shift, float *e, bool *seen, double *left)
 {
     const int width = level->width, dx = (int)floor(shift.x), dy = (int)floor(shift.y);

@@ -27,7 +27,7 @@ in_tree() {
   fi
 }
 install() {
-  local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends)
+  local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300 --no-install-recommends)
   if [[ -n $root ]]; then
     in_tree "${apt[@]}" "$@"
   else

@@ -24,7 +24,7 @@ packaged=$(sed -n '1s/.*(\(.*\)-[^-]*).*/\1/p' "$packaging/debian/changelog")
 soname=$(number MAJOR)
 [[ $soname != 0 ]] || soname=0.$(number MINOR)
 grep -qx "Package: libl1l2stab$soname" "$packaging/debian/control" ||
-  die "the soname is libl1l2stab.so.$soname: rename the package of the library in packaging/debian to libl1l2stab$soname"
+  die "the soname is libl1l2stab.so.$soname: rename the library's package in packaging/debian to libl1l2stab$soname"
 
 rm -rf "$tree/debian"
 cp -r "$packaging/debian" "$tree/debian"

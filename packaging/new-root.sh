@@ -11,8 +11,8 @@ as_root() { if [[ $(id -u) -eq 0 ]]; then "$@"; else sudo "$@"; fi; }
 mirror=$(find /etc/apt/sources.list /etc/apt/sources.list.d \( -name '*.sources' -o -name '*.list' \) 2>/dev/null |
   xargs -r cat | grep -v '^ *#' | grep -oE '[a-z+]+:/[^ ]*/debian/?( |$)' | head -n 1 | tr -d ' ' || true)
 
-command -v debootstrap >/dev/null ||
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300 --no-install-recommends install debootstrap >/dev/null
+command -v debootstrap >/dev/null || as_root env DEBIAN_FRONTEND=noninteractive \
+  apt-get -q -y -o DPkg::Lock::Timeout=300 --no-install-recommends install debootstrap >/dev/null
 [[ ! -e $root ]] || {
   echo "new-root: $root exists already" >&2
   exit 1

@@ -15,8 +15,8 @@ as_root() { if [[ $(id -u) -eq 0 ]]; then "$@"; else sudo "$@"; fi; }
 holder=$(mktemp -d)
 trap 'as_root rm -rf --one-file-system "$holder"' EXIT
 chmod 755 "$holder"
-command -v autopkgtest >/dev/null ||
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300 --no-install-recommends install autopkgtest apt-utils >/dev/null
+command -v autopkgtest >/dev/null || as_root env DEBIAN_FRONTEND=noninteractive \
+  apt-get -q -y -o DPkg::Lock::Timeout=300 --no-install-recommends install autopkgtest apt-utils >/dev/null
 say "making a clean root of $suite"
 "$packaging/new-root.sh" "$holder/root" "$suite"
 

@@ -37,13 +37,14 @@ struct Report {
     ReportPairs *pairs;
 };
 
-#ifndef HAVE_CHART
+/* The files of report/report.gresource.xml, compiled into the program by glib-compile-resources. */
+#ifdef HAVE_CHART
+GResource *report_get_resource(void);
+#else
 static GResource *report_get_resource(void)
 {
     return NULL;
 }
-#else
-#include "report-resources.h"
 #endif
 
 gboolean report_check(const char *folder, GError **error)

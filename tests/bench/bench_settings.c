@@ -166,7 +166,7 @@ int main(int argc, char **argv)
     int count = 0;
     for (; count < argc - 1 && count < 16; count++)
         clips[count] = read_clip(argv[count + 1]);
-    printf("The shake that is left, px at 640 wide, with one setting changed. Behind the name: the shake as filmed.\n\n");
+    printf("The shake that is left, px at 640 wide, with one setting changed. Behind a name: the shake as filmed.\n\n");
     print_table(clips, count, CROP, crops, sizeof crops / sizeof *crops);
     print_table(clips, count, WINDOW, windows, sizeof windows / sizeof *windows);
     print_table(clips, count, LAMBDA, lambdas, sizeof lambdas / sizeof *lambdas);

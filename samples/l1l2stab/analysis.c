@@ -114,20 +114,22 @@ static void pull_steps(L1L2Stab *stab, Shake *shake)
         shake_add(shake, info.S, (info.flags & L1L2STAB_INFO_PATH_START) != 0);
 }
 
-double analysis_share_left(const Analysis *analysis, double crop, double lambda)
+double analysis_share_left(const Analysis *analysis, double crop, double lambda, guint frames)
 {
     L1L2StabConfig config = analysis->config;
-    Shake left = new_shake(analysis);
+    Shake filmed = new_shake(analysis), left = filmed;
     L1L2Stab *stab;
     config.crop_ratio = crop;
     config.lambda = lambda;
+    config.threads = 1; /* there is nothing to render */
     if (l1l2stab_create(&stab, &config) != L1L2STAB_OK)
         return 1;
     L1L2StabResult result = L1L2STAB_OK;
-    for (guint i = 0; i < analysis->motions->len && result == L1L2STAB_OK; i++) {
+    for (guint i = 0; i < MIN(frames, analysis->motions->len) && result == L1L2STAB_OK; i++) {
         const Motion *motion = &g_array_index(analysis->motions, Motion, i);
         const L1L2StabFrame frame = {.motion = motion->F, .pts = motion->time_ns,
                                      .flags = motion->path_start ? L1L2STAB_FRAME_DISCONT : 0};
+        shake_add(&filmed, motion->F, motion->path_start || motion->lost);
         result = l1l2stab_push(stab, &frame);
         pull_steps(stab, &left);
     }
@@ -135,7 +137,8 @@ double analysis_share_left(const Analysis *analysis, double crop, double lambda)
         result = l1l2stab_finish(stab);
     pull_steps(stab, &left);
     l1l2stab_free(&stab);
-    return result != L1L2STAB_OK ? 1 : analysis->shake > 0 ? shake_px(&left) / analysis->shake : 0;
+    const double before = shake_px(&filmed);
+    return result != L1L2STAB_OK ? 1 : before > 0 ? shake_px(&left) / before : 0;
 }
 
 void analysis_begin(Analysis *analysis, const Options *options, Input *input)

@@ -42,12 +42,13 @@ void analysis_add(Analysis *analysis, const GstStructure *message);
 void analysis_end(Analysis *analysis);
 
 /*
- * The share of the shake that is left with these settings. The shake is the root mean square of the second difference
+ * The share of the shake that is left in the first `frames` frames with these settings. The shake is the root mean square of the second difference
  * of the frame's corners, in pixels of a picture that is SHAKE_WIDTH wide: the distance of a corner from the place that
  * its motion in the two frames before predicts. A steady pan has none. Nothing is measured across a cut.
  */
 #define SHAKE_WIDTH 640.0
-double analysis_share_left(const Analysis *analysis, double crop, double lambda);
+#define ALL_FRAMES G_MAXUINT
+double analysis_share_left(const Analysis *analysis, double crop, double lambda, guint frames);
 
 /* A matrix of nine numbers in a message. It stays as it is if the message has none of this name. */
 void analysis_read_matrix(const GstStructure *message, const char *name, double matrix[9]);

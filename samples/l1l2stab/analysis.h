@@ -42,9 +42,11 @@ void analysis_add(Analysis *analysis, const GstStructure *message);
 void analysis_end(Analysis *analysis);
 
 /*
- * The share of the shake that is left in the first `frames` frames with these settings. The shake is the root mean square of the second difference
- * of the frame's corners, in pixels of a picture that is SHAKE_WIDTH wide: the distance of a corner from the place that
- * its motion in the two frames before predicts. A steady pan has none. Nothing is measured across a cut.
+ * The share of the shake that is left in the first `frames` frames with these settings.
+ *
+ * The shake is the root mean square of the second difference of the frame's corners, in pixels of a picture that is
+ * SHAKE_WIDTH wide: the distance of a corner from the place that its motion in the two frames before predicts. A steady
+ * pan has none. Nothing is measured across a cut.
  */
 #define SHAKE_WIDTH 640.0
 #define ALL_FRAMES G_MAXUINT

@@ -19,15 +19,20 @@ static const double shown_lambdas[] = {0.1, 0.25, 0.5, 1, 2};
 
 /* ---- suggestions: as little as is needed ---- */
 
+static double share_left(const Analysis *analysis, double crop, double lambda)
+{
+    return analysis_share_left(analysis, crop, lambda, ALL_FRAMES);
+}
+
 /* The widest crop window that removes this share of what the narrowest one removes. */
 static double widest_crop(const Analysis *analysis, double keep)
 {
-    const double wanted = keep * (1 - analysis_share_left(analysis, NARROWEST_CROP, analysis->config.lambda, ALL_FRAMES));
+    const double wanted = keep * (1 - share_left(analysis, NARROWEST_CROP, analysis->config.lambda));
     int low = 0, high = (int)lrint((WIDEST_CROP - NARROWEST_CROP) / CROP_STEP); /* low is narrow enough */
     while (low < high) {
         const int middle = (low + high + 1) / 2;
         const double crop = NARROWEST_CROP + middle * CROP_STEP;
-        if (1 - analysis_share_left(analysis, crop, analysis->config.lambda, ALL_FRAMES) >= wanted)
+        if (1 - share_left(analysis, crop, analysis->config.lambda) >= wanted)
             low = middle;
         else
             high = middle - 1;
@@ -38,10 +43,10 @@ static double widest_crop(const Analysis *analysis, double keep)
 /* The largest lambda, which follows the camera most closely, that removes this share of what the smallest removes. */
 static double largest_lambda(const Analysis *analysis, double crop, double keep)
 {
-    const double wanted = keep * (1 - analysis_share_left(analysis, crop, shown_lambdas[0], ALL_FRAMES));
+    const double wanted = keep * (1 - share_left(analysis, crop, shown_lambdas[0]));
     double best = shown_lambdas[0];
     for (size_t i = 1; i < G_N_ELEMENTS(shown_lambdas); i++)
-        if (1 - analysis_share_left(analysis, crop, shown_lambdas[i], ALL_FRAMES) >= wanted)
+        if (1 - share_left(analysis, crop, shown_lambdas[i]) >= wanted)
             best = shown_lambdas[i];
     return best;
 }
@@ -134,7 +139,7 @@ static void print(const Analysis *analysis, double keep)
         add_number(text, " ", shown_crops[i], "%6.2f", "");
     g_string_append(text, "\nshake left     ");
     for (size_t i = 0; i < G_N_ELEMENTS(shown_crops); i++) {
-        const double left = analysis_share_left(analysis, shown_crops[i], analysis->config.lambda, ALL_FRAMES);
+        const double left = share_left(analysis, shown_crops[i], analysis->config.lambda);
         add_number(text, " ", 100 * left, "%5.1f", "%");
         add_number(crops, i ? ", {\"crop-ratio\": " : "{\"crop-ratio\": ", shown_crops[i], "%.2f", ", ");
         add_number(crops, "\"left\": ", left, "%.4f", "}");

@@ -101,14 +101,15 @@ static void read_place(const GstStructure *message, const char *name, double tur
     place[ZOOM] = 100 / hypot(matrix[0], matrix[3]);
 }
 
-static const char *event_of(const GstStructure *message, gboolean first)
+/* The first frame of the video starts a path, too, but there is no cut. */
+static const char *event_of(const GstStructure *message)
 {
     static const char *const fields[] = {"path-start", "motion-lost", "bridged", "path-fallback"};
     static const char *const names[] = {"cut", "lost", "bridged", "fallback"};
     gboolean happened = FALSE;
-    for (size_t i = first ? 1 : 0; i < G_N_ELEMENTS(fields); i++)
+    for (size_t i = 0; i < G_N_ELEMENTS(fields); i++)
         if (gst_structure_get_boolean(message, fields[i], &happened) && happened)
-            return i > 0 && first ? NULL : names[i];
+            return names[i];
     return NULL;
 }
 
@@ -121,7 +122,7 @@ void report_add(Report *report, const GstStructure *message)
     const guint count = report->samples->len;
     const Sample *before = count ? &g_array_index(report->samples, Sample, count - 1) : NULL;
     analysis_add(&report->analysis, message);
-    sample.event = event_of(message, !before);
+    sample.event = before ? event_of(message) : NULL;
     if (sample.event && g_str_equal(sample.event, "cut"))
         before = NULL; /* the path begins again at 0 */
     read_place(message, "camera", before ? before->camera[TURN] : 0, sample.camera);

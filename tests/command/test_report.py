@@ -260,4 +260,4 @@ if __name__ == '__main__':
                                                   stderr=subprocess.PIPE, encoding='utf-8').stderr:
         print('skipped: the command was built without Chart.js (package libjs-chart.js)')
         sys.exit(SKIP)
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -26,16 +26,13 @@ for try in 'unshare --net' 'unshare --map-root-user --net'; do
 done
 [[ ${#offline[@]} -gt 0 ]] || say "unshare cannot turn the network off here: building with network"
 
-git -C "$top" rev-parse --git-dir >/dev/null 2>&1 || die "a tarball can only be made in a git repository"
 rm -rf "$build"
-"$top/subprojects/fetch-osqp.sh"
-meson setup -Dplugin=false -Dsamples=false -Dtests=false "$build/tarball" "$top" >/dev/null
-meson dist -C "$build/tarball" --include-subprojects --no-tests --allow-dirty >/dev/null
-tarballs=("$build"/tarball/meson-dist/*.tar.xz)
-say "made ${tarballs[0]}"
+mkdir -p "$build"
+tarball=$("$top/.ci/make-tarball.sh" "$build/tarball")
+say "made $tarball"
 
 mkdir "$build/tree"
-tar -xf "${tarballs[0]}" -C "$build/tree" --strip-components=1
+tar -xf "$tarball" -C "$build/tree" --strip-components=1
 "${offline[@]}" meson setup "$build/new" "$build/tree" >/dev/null || die "the tarball could not be configured offline"
 "${offline[@]}" ninja --quiet -C "$build/new" || die "the tarball could not be built offline"
 status=0

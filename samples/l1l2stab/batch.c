@@ -172,7 +172,8 @@ static gboolean spawn(Batch *batch, const char *in, const char *out, GError **er
     char *last[] = {(char *)"-o", (char *)out, (char *)"--", (char *)in, NULL};
     for (size_t i = 0; i < G_N_ELEMENTS(last); i++)
         g_ptr_array_add(argv, last[i]);
-    const gboolean ok = g_spawn_async(NULL, (char **)argv->pdata, NULL, G_SPAWN_DO_NOT_REAP_CHILD, set_up_child, NULL,
+    const gboolean ok = g_spawn_async(NULL, (char **)argv->pdata, NULL,
+                                      G_SPAWN_DO_NOT_REAP_CHILD | G_SPAWN_SEARCH_PATH, set_up_child, NULL,
                                       &pid, error);
     g_ptr_array_unref(argv);
     if (ok) {

@@ -5,6 +5,7 @@
 #include "interrupt.h"
 #include "output.h"
 #include "output_file.h"
+#include "report.h"
 #include "say.h"
 
 #include <signal.h>
@@ -22,6 +23,7 @@ typedef struct Job {
     gint stopping;             /* atomic: the reader ends as if the input ended here */
     gboolean interrupted, at_once;
     GError *error;
+    Report *report;            /* or NULL */
     JobMessage on_message;     /* or NULL */
     void *cookie;
 } Job;
@@ -92,6 +94,8 @@ static gboolean on_bus(GstBus *bus, GstMessage *message, gpointer data)
     }
     case GST_MESSAGE_ELEMENT:
         picture_note_missing(job->picture, message);
+        if (job->report)
+            report_add(job->report, gst_message_get_structure(message));
         if (job->on_message)
             job->on_message(job->cookie, gst_message_get_structure(message));
         break;
@@ -115,13 +119,17 @@ static void on_interrupt(void *cookie, gboolean at_once)
         say_note("interrupted: the frames so far are written (once more: end at once)");
 }
 
+/* Of the wanted part, in seconds; 0: not known. */
+static double duration_of(const Job *job)
+{
+    const double end = job->options->end_us >= 0 ? (double)job->options->end_us / 1e6 : G_MAXDOUBLE;
+    return MAX(0, MIN(end, (double)input_duration_ns(job->input) / 1e9) - (double)job->options->start_us / 1e6);
+}
+
 static Progress progress_of(const Job *job)
 {
     gint64 decoded;
-    const double end = job->options->end_us >= 0 ? (double)job->options->end_us / 1e6 : G_MAXDOUBLE;
-    const double duration = MIN(end,
-                                (double)input_duration_ns(job->input) / 1e9) - (double)job->options->start_us / 1e6;
-    Progress progress = {.file = job->input->name, .duration = MAX(0, duration),
+    Progress progress = {.file = job->input->name, .duration = duration_of(job),
                          .elapsed = (double)(g_get_monotonic_time() - job->started_us) / G_USEC_PER_SEC,
                          .bytes = job->output ? output_bytes(job->output) : 0};
     picture_progress(job->picture, &decoded, &progress.frames, &progress.seconds);
@@ -221,6 +229,9 @@ static gboolean prepare(Job *job, const char *in, const char *out)
         job->picture = picture_new(job->options, job->input, &encoder, out ? PICTURE_ENCODE : PICTURE_SHOW,
                                    !out || output_needs_upright_picture(job->output), sink, &job->error);
     encoder_clear(&encoder);
+    if (job->picture && job->options->report)
+        job->report = report_new(job->options, job->input, picture_stabilizer(job->picture),
+                                 picture_flip_method(job->input), (gint64)(duration_of(job) * GST_SECOND));
     return job->picture != NULL;
 }
 
@@ -237,6 +248,8 @@ static int finish(Job *job)
         job->at_once = TRUE; /* there is nothing to be written yet */
     if (job->output && !job->error && !job->at_once)
         output_finish(job->output, job->interrupted, &written, &job->error);
+    if (job->report && written && !job->error)
+        report_write(job->report, written, &job->error);
     if (job->error)
         code = job->error->code;
     else if (job->interrupted)
@@ -271,6 +284,7 @@ int job_run(const Options *options, const char *in, const char *out)
         code = job.error->code;
     }
     picture_free(job.picture);
+    report_free(job.report);
     output_free(job.output);
     input_close(job.input);
     g_clear_error(&job.error);

@@ -21,7 +21,9 @@
  *     audio_convert, subtitle_convert    for containers that do not take the input's kind
  *     output_file     the file that has its name only when it is complete
  *     batch           many files, a process each
+ *     analysis        the measured motion, and what other settings would make of it
  *     estimate        analysis alone, and --crop auto
+ *     report, report_pairs, report/      --report: numbers, pictures, and the page that shows them
  *     interrupt, say, fault              signals; what is printed; errors and exit codes
  */
 #include "batch.h"

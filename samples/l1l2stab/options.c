@@ -4,6 +4,7 @@
 #include "encoder.h"
 #include "fault.h"
 #include "input.h"
+#include "report.h"
 
 #include <l1l2stab/l1l2stab.h>
 #include <math.h>
@@ -46,6 +47,7 @@ static const Option table[] = {
     {"crop", 0, TYPE_CROP, AT(crop_auto), TRUE, "auto", NULL},
     {"keep", 0, TYPE_NUMBER, AT(keep), TRUE, "SHARE", "least crop for 0.95 of the effect"},
     {"compare", 0, TYPE_COMPARE, AT(compare), TRUE, "side|split|flip", "before and after in one video"},
+    {"report", 0, TYPE_TEXT, AT(report), TRUE, "DIR", "a page with paths, numbers, pictures"},
     {"preview", 0, TYPE_FLAG, AT(preview), FALSE, NULL, NULL},
     {"estimate", 0, TYPE_FLAG, AT(estimate), TRUE, NULL, "show it; only tell how shaky it is"},
     {"batch", 0, TYPE_FLAG, AT(batch), FALSE, NULL, NULL},
@@ -189,7 +191,7 @@ static void show_completions(void)
         const Option *option = &table[i];
         const char *values = option->type == TYPE_COMPARE                 ? "side split flip"
                              : g_str_equal(option->name, "encoder")       ? "h264 hevc av1 vp9 prores ffv1 list"
-                             : g_str_equal(option->name, "out-dir")       ? "DIR"
+                             : option->value && g_str_equal(option->value, "DIR") ? "DIR"
                              : option->value && g_str_equal(option->value, "FILE") ? "FILE"
                              : option->type == TYPE_CROP                  ? "auto"
                              : option->value                              ? "VALUE"
@@ -415,6 +417,10 @@ static gboolean check(const Options *options, GError **error)
         return fault(error, EXIT_USAGE, "-o names one file, but there are several inputs: use --out-dir");
     if (options->compare && uses_setting(options, "output-size", "crop"))
         return fault(error, EXIT_USAGE, "--compare needs frames of one size: leave out --output-size=crop");
+    if (options->report && (options->preview || options->estimate || options->compare))
+        return fault(error, EXIT_USAGE, "--report needs a plain output: leave out --preview, --estimate and --compare");
+    if (options->report && !report_check(options->report, error))
+        return FALSE;
     if (many && options->preview)
         return fault(error, EXIT_USAGE, "--preview shows one file");
     if (options->end_us >= 0 && options->end_us <= options->start_us)

@@ -28,6 +28,7 @@ typedef struct Options {
     gint64 start_us, end_us; /* of the input; end_us -1: to its end */
     Compare compare;
     gboolean preview, estimate;
+    char *report;        /* folder, or NULL */
 
     gboolean crop_auto;      /* --crop auto */
     double keep;             /* share of the steadying that --crop auto keeps, 0 to 1 */

@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#define OWN_FILES "/proc/self/fd"
+
 struct OutputFile {
     int fd;
     char *name;
@@ -57,8 +59,10 @@ OutputFile *output_file_open(const char *name, GError **error)
     OutputFile *file = g_new0(OutputFile, 1);
     char *folder = g_path_get_dirname(name);
     file->name = g_strdup(name);
-    file->fd = g_open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
-    if (file->fd < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) {
+    /* Where /proc is not mounted, as in some chroots, a file without a name could not get one at the end. */
+    const gboolean named = g_access(OWN_FILES, X_OK) != 0;
+    file->fd = named ? -1 : g_open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    if (named || (file->fd < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL))) {
         file->temporary = temporary_name(name);
         file->fd = g_open(file->temporary, O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
     }
@@ -82,7 +86,7 @@ static gboolean give_temporary_name(OutputFile *file)
     char source[64];
     if (file->temporary)
         return TRUE;
-    g_snprintf(source, sizeof source, "/proc/self/fd/%d", file->fd);
+    g_snprintf(source, sizeof source, OWN_FILES "/%d", file->fd);
     char *temporary = temporary_name(file->name);
     if (linkat(AT_FDCWD, source, AT_FDCWD, temporary, AT_SYMLINK_FOLLOW) == 0)
         file->temporary = temporary;

@@ -346,10 +346,15 @@ static const char *flip_method(const int32_t *matrix)
     return mirror ? mirrored[quarters] : plain[quarters];
 }
 
-static char *flip_element(const Input *input, gboolean upright)
+const char *picture_flip_method(const Input *input)
 {
     const int32_t *matrix = (const void *)av_stream_get_side_data(input->video, AV_PKT_DATA_DISPLAYMATRIX, NULL);
-    const char *method = upright && matrix ? flip_method(matrix) : NULL;
+    return matrix ? flip_method(matrix) : NULL;
+}
+
+static char *flip_element(const Input *input, gboolean upright)
+{
+    const char *method = upright ? picture_flip_method(input) : NULL;
     return method ? g_strdup_printf("videoflip video-direction=%s ! ", method) : g_strdup("");
 }
 

@@ -42,6 +42,9 @@ void picture_free(Picture *picture);
 GstElement *picture_stabilizer(Picture *picture);
 GstBus *picture_bus(Picture *picture);
 
+/* How videoflip turns the picture of an input upright, such as "90r". NULL: it is upright. */
+const char *picture_flip_method(const Input *input);
+
 gboolean picture_start(Picture *picture);
 void picture_stop(Picture *picture);
 

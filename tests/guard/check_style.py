@@ -11,9 +11,9 @@ from pathlib import Path
 
 MAX_COLUMNS = 120
 
-PLACES = ('.ci', 'docs', 'lib', 'plugin', 'samples', 'subprojects/packagefiles/osqp', 'tests')
+PLACES = ('.ci', 'docs', 'lib', 'packaging', 'plugin', 'samples', 'subprojects/packagefiles/osqp', 'tests')
 SOURCE = {'.c', '.cpp', '.h', '.py', '.sh'}
-TEXT = SOURCE | {'.md', '.build', '.map', '.wrap', ''}
+TEXT = SOURCE | {'.html', '.md', '.build', '.map', '.wrap', ''}
 SPDX = 'SPDX-License-Identifier: MIT'
 
 

@@ -23,7 +23,7 @@ __version__: str = _ffi.string(_lib.l1l2stab_version()).decode()
 
 def simd() -> str:
     """The instruction set that the inner loops use on this processor: 'avx2', or 'none' for plain C."""
-    return _ffi.string(_lib.l1l2stab_simd()).decode()
+    return str(_ffi.string(_lib.l1l2stab_simd()).decode())
 
 
 __all__ = [

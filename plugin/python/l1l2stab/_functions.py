@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Iterable, Iterator, Optional, Union
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Optional, Union
 
 import numpy as np
 
 from . import _pictures
-from ._pictures import Picture, Shape
+from ._pictures import Picture, PictureT, Shape
 from ._settings import Settings, check_settings
 from ._stabilizer import Info, Stabilizer
 
@@ -44,8 +44,8 @@ def _raise_error(stabilizer: Stabilizer) -> None:
         raise error
 
 
-def stabilize(frames: Iterable[Picture], fps: float = 0, *, format: Optional[str] = None,
-              out: Optional[Picture] = None, **settings: Unpack[Settings]) -> Iterator[Picture]:
+def stabilize(frames: Iterable[PictureT], fps: float = 0, *, format: Optional[str] = None,
+              out: Optional[Picture] = None, **settings: Unpack[Settings]) -> Iterator[PictureT]:
     """Yields the stabilized frames, as many as there are frames, in order.
 
         for frame in l1l2stab.stabilize(frames, fps=30, lambda_=0.5):
@@ -55,8 +55,8 @@ def stabilize(frames: Iterable[Picture], fps: float = 0, *, format: Optional[str
         been yielded, so each has to be an array of its own. If the size changes, a new path starts.
     fps: frames a second, [0, 1000]; 0: unknown, taken as 30
     format: one of FORMATS; None: guessed from the shape. (height, width): GRAY8; (height, width, 3): BGR;
-        (height, width, 4): BGRA; three planes: I420, Y42B or Y444; two planes: NV12. Only the brightness that the motion
-        is measured in depends on the order of the colors, so RGB frames can be taken for BGR ones with little harm.
+        (height, width, 4): BGRA; three planes: I420, Y42B or Y444; two planes: NV12. Only the brightness in which the
+        motion is measured depends on the order of the colors, so RGB frames can be taken for BGR ones with little harm.
     out: an array or tuple of planes to render into, again and again; None: each frame is a new array
     settings: see Settings
 
@@ -66,8 +66,8 @@ def stabilize(frames: Iterable[Picture], fps: float = 0, *, format: Optional[str
     return _stabilize(frames, fps, format, out, settings)
 
 
-def _stabilize(frames: Iterable[Picture], fps: float, format: Optional[str], out: Optional[Picture],
-               settings: Settings) -> Iterator[Picture]:
+def _stabilize(frames: Iterable[PictureT], fps: float, format: Optional[str], out: Optional[Picture],
+               settings: Settings) -> Iterator[PictureT]:
     stabilizer: Optional[Stabilizer] = None
     shape: Optional[Shape] = None
     try:
@@ -79,8 +79,7 @@ def _stabilize(frames: Iterable[Picture], fps: float, format: Optional[str], out
                     stabilizer.close()
                 stabilizer, shape = _open(new_shape, fps, settings), new_shape
             stabilizer.push(frame)
-            for output in stabilizer.ready(out):
-                yield output.picture
+            yield from _ready(stabilizer, out)
         if stabilizer is not None:
             yield from _rest(stabilizer, out)
     finally:
@@ -88,11 +87,15 @@ def _stabilize(frames: Iterable[Picture], fps: float, format: Optional[str], out
             stabilizer.close()
 
 
-def _rest(stabilizer: Stabilizer, out: Optional[Picture]) -> Iterator[Picture]:
-    """The held frames; then the error of a frame that could not be measured, if there was one."""
-    stabilizer.finish()
+def _ready(stabilizer: Stabilizer, out: Optional[Picture]) -> Iterator[Any]:
     for output in stabilizer.ready(out):
         yield output.picture
+
+
+def _rest(stabilizer: Stabilizer, out: Optional[Picture]) -> Iterator[Any]:
+    """The held frames; then the error of a frame that could not be measured, if there was one."""
+    stabilizer.finish()
+    yield from _ready(stabilizer, out)
     _raise_error(stabilizer)
 
 
@@ -146,9 +149,10 @@ def _smooth(motions: Iterable[Union[Motion, ArrayLike]], width: int, height: int
             settings: Settings) -> Iterator[Info]:
     with Stabilizer(width, height, 'GRAY8', fps, **settings) as stabilizer:
         for motion in motions:
-            known = isinstance(motion, Motion)
-            stabilizer.push(None, motion=motion.matrix if known else motion,
-                            discontinuity=known and motion.path_start)
+            if isinstance(motion, Motion):
+                stabilizer.push(None, motion=motion.matrix, discontinuity=motion.path_start)
+            else:
+                stabilizer.push(None, motion=motion)
             for output in stabilizer.ready(render=False):
                 yield output.info
         stabilizer.finish()
@@ -169,4 +173,4 @@ def pixel_matrix(matrix: np.ndarray, input_size: tuple[int, int],
     def shift(size: tuple[int, int], sign: int) -> np.ndarray:
         return np.array([[1, 0, sign * (size[0] - 1) / 2], [0, 1, sign * (size[1] - 1) / 2], [0, 0, 1]])
 
-    return shift(input_size, 1) @ matrix @ shift(output_size or input_size, -1)
+    return np.asarray(shift(input_size, 1) @ matrix @ shift(output_size or input_size, -1))

@@ -2,7 +2,7 @@
 """Calls of the C library: its errors as exceptions, its log lines, and the objects that it holds.
 
 The library keeps a pointer to each pushed frame until it calls release(). Meanwhile `Held` keeps the arrays alive.
-cffi releases the GIL during each call. The library logs and releases on the thread of the call, so what happens there is
+cffi releases the GIL during each call. The library logs and releases on the thread of the call. What happens there is
 only noted down, and is acted on after the call: then the lock of the stabilizer is no longer held.
 """
 from __future__ import annotations

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Optional, Sequence, TypeVar, Union
 
 import numpy as np
 
 from ._cffi import ffi, lib
 
 Picture = Union[np.ndarray, Sequence[np.ndarray]]
+PictureT = TypeVar('PictureT', np.ndarray, Sequence[np.ndarray])  # frames come out as they go in
 
 # A plane: components, and the shifts by which its width and height are smaller than the picture's.
 _FULL = {n: (n, 0, 0) for n in (1, 2, 3, 4)}
@@ -48,7 +49,7 @@ class Layout:
 
     def plane_shapes(self, width: int, height: int) -> list[tuple[int, ...]]:
         """The shape of each plane. Sizes are rounded up."""
-        shapes = []
+        shapes: list[tuple[int, ...]] = []
         for components, right, down in self.planes:
             rows, columns = -(-height >> down), -(-width >> right)
             shapes.append((rows, columns) if components == 1 else (rows, columns, components))
@@ -103,7 +104,7 @@ def _planes_guess(planes: Sequence[np.ndarray]) -> str:
 
 def _packed_height(layout: Layout, picture: np.ndarray) -> int:
     """The height of a picture whose planes lie one after the other in one array."""
-    width, total = picture.shape[-1], picture.size
+    width, total = int(picture.shape[-1]), picture.size
     height = round(total / (width * sum(c / (1 << right + down) for c, right, down in layout.planes)))
     if total != sum(int(np.prod(shape)) for shape in layout.plane_shapes(width, height)):
         raise ValueError(f'an array of the shape {picture.shape} is no {layout.format} picture: give the planes as a '
@@ -111,12 +112,12 @@ def _packed_height(layout: Layout, picture: np.ndarray) -> int:
     return height
 
 
-def shape_of(picture: Picture, format: Optional[str] = None) -> Shape:
+def shape_of(picture: Any, format: Optional[str] = None) -> Shape:
     """The shape of a picture. Without a format it is guessed."""
     packed = isinstance(picture, np.ndarray)
     if not packed and not (isinstance(picture, (tuple, list)) and picture and
                            all(isinstance(plane, np.ndarray) and plane.ndim >= 2 for plane in picture)):
-        raise TypeError(f'a frame is a numpy array, or a tuple of one numpy array a plane, not {type(picture).__name__}')
+        raise TypeError(f'a frame is a numpy array or a tuple of one array a plane, not {type(picture).__name__}')
     if packed and (picture.ndim < 2 or not picture.size):
         raise ValueError(f'an array of the shape {picture.shape} is no picture')
     layout = layout_named(format or (_packed_guess(picture) if packed else _planes_guess(picture)))
@@ -165,7 +166,7 @@ def _rows_are_dense(plane: np.ndarray) -> bool:
     return True
 
 
-def planes_of(shape: Shape, picture: Picture, *, writable: bool = False) -> list[np.ndarray]:
+def planes_of(shape: Shape, picture: Any, *, writable: bool = False) -> list[np.ndarray]:
     """The planes of a picture of this shape, each with dense rows. Views, if the picture's rows are dense; otherwise
     copies, or a ValueError if they are to be written to."""
     layout, sizes = shape.layout, shape.layout.plane_shapes(shape.width, shape.height)
@@ -196,7 +197,7 @@ def planes_of(shape: Shape, picture: Picture, *, writable: bool = False) -> list
 
 
 def address_of(plane: np.ndarray) -> int:
-    return plane.__array_interface__['data'][0]
+    return int(plane.__array_interface__['data'][0])
 
 
 def point_to(frame: Any, planes: list[np.ndarray]) -> None:

@@ -74,11 +74,11 @@ def _value(name: str, field: Any, value: Any) -> Any:
     return value
 
 
-def _set_mask(config: Any, mask: np.ndarray) -> np.ndarray:
+def _set_mask(config: Any, mask: Any) -> np.ndarray:
     """Returns the array that the config points to."""
     rows = np.ascontiguousarray(mask)
     if rows.ndim != 2 or rows.dtype not in (np.bool_, np.uint8):
-        raise ValueError(f'mask is an array of {rows.dtype} and the shape {rows.shape}: give bool or uint8 and two axes')
+        raise ValueError(f'mask is an array of {rows.dtype} and the shape {rows.shape}: give bool or uint8, two axes')
     config.mask = ffi.cast('const uint8_t *', rows.__array_interface__['data'][0])
     config.mask_stride = config.mask_width = rows.shape[1]
     config.mask_height = rows.shape[0]

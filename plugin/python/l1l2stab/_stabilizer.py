@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 _MATRICES = ('F', 'B', 'S', 'C', 'P', 'warp')
 _FLAGS = {name: getattr(lib, 'L1L2STAB_INFO_' + name.upper())
           for name in ('path_start', 'motion_lost', 'path_fallback', 'early', 'motion_failed', 'bridged')}
-_SAME_FIELDS = ('index', 'path_index', 'crop_ratio', 'tracks', 'inliers', 'solver_iterations', 'solver_bound', 'quality',
-                'bypass', 'residual', 'readout')
+_SAME_FIELDS = ('index', 'path_index', 'crop_ratio', 'tracks', 'inliers', 'solver_iterations', 'solver_bound',
+                'quality', 'bypass', 'residual', 'readout')
 _SOURCES = {value: name for name, value in _library.constants('L1L2StabMotionSource').items()}
 _SOLVERS = {value: name for name, value in _library.constants('L1L2StabSolver').items()}
 _STAGES = {name: value for name, value in _library.constants('L1L2StabStage').items() if name != 'count'}
@@ -156,8 +156,10 @@ class Stabilizer:
         self._shape = _pictures.Shape(_pictures.layout_named(format), width, height)
         self._stream = _library.Stream()
         config, keep = make_config(self._stream, self._shape, fps, settings)
-        self._lambda, self._crop_ratio, self._bypass = getattr(config, 'lambda'), config.crop_ratio, False
-        self._delay = config.window
+        self._lambda: float = getattr(config, 'lambda')
+        self._crop_ratio: float = config.crop_ratio
+        self._bypass = False
+        self._delay: int = config.window
         self._held = 0
         self._warned = False
         self._lock = threading.Lock()
@@ -258,7 +260,9 @@ class Stabilizer:
         discontinuity: a new path starts here: no frame before belongs to the same shot
         motion: (3, 3): F of this frame, where it is known; None: it is measured
         """
-        arrays = [] if picture is None and motion is not None else _pictures.planes_of(self._shape, picture)
+        if picture is None and motion is None:
+            raise TypeError('push() needs a picture, or a motion, or both')
+        arrays = [] if picture is None else _pictures.planes_of(self._shape, picture)
         address = _pictures.address_of(arrays[0]) if arrays else 0
         self._warn_if_reused(arrays, address)
         frame = ffi.new('L1L2StabFrame *')
@@ -368,7 +372,7 @@ class Stabilizer:
     def _call(self, function: Any, *arguments: Any) -> int:
         """Calls a function of the library with this instance. Returns its result, or raises the error that it is."""
         with self._lock:
-            result = function(self._open(), *arguments) or 0
+            result = int(function(self._open(), *arguments) or 0)
             lines = self._stream.settle()
         self._stream.report(lines, result)
         return result

@@ -5,7 +5,8 @@
 #        tests/run.sh --sanitize [MESON_TEST_OPTION...]    the library's and the element's tests under AddressSanitizer
 #                                                          and UndefinedBehaviorSanitizer, built in build-sanitize
 #        tests/run.sh --long [MESON_TEST_OPTION...]        only the long tests, which the others leave out: the filter
-#                                                          in an ffmpeg that they build, half an hour at first
+#                                                          in an ffmpeg that they build, half an hour at first, and the
+#                                                          Python wheel with an OpenCV that they build, ten minutes
 # The environment variable BUILD_DIR names another build directory. CC and CXX choose the compiler of a new one.
 set -euo pipefail
 

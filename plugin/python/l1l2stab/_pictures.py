@@ -2,6 +2,7 @@
 """Pictures as numpy arrays: which format an array has, and where its planes are in memory."""
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Optional, Sequence, TypeVar, Union
 
@@ -106,7 +107,7 @@ def _packed_height(layout: Layout, picture: np.ndarray) -> int:
     """The height of a picture whose planes lie one after the other in one array."""
     width, total = int(picture.shape[-1]), picture.size
     height = round(total / (width * sum(c / (1 << right + down) for c, right, down in layout.planes)))
-    if total != sum(int(np.prod(shape)) for shape in layout.plane_shapes(width, height)):
+    if total != sum(math.prod(shape) for shape in layout.plane_shapes(width, height)):
         raise ValueError(f'an array of the shape {picture.shape} is no {layout.format} picture: give the planes as a '
                          'tuple of arrays, or one array whose last axis is the width')
     return height
@@ -136,7 +137,7 @@ def empty(shape: Shape) -> Picture:
         return tuple(np.empty(size, shape.layout.dtype) for size in sizes)
     if len(sizes) == 1:
         return np.empty(sizes[0], shape.layout.dtype)
-    total = sum(int(np.prod(size)) for size in sizes)
+    total = sum(math.prod(size) for size in sizes)
     if total % shape.width:
         raise ValueError(f'{shape.layout.format} pictures of {shape.width}x{shape.height} do not fit in one array with '
                          'rows of that width: use a tuple of one array a plane')
@@ -145,12 +146,12 @@ def empty(shape: Shape) -> Picture:
 
 def _split(layout: Layout, picture: np.ndarray, sizes: list[tuple[int, ...]]) -> list[np.ndarray]:
     """The planes of a picture in one array, as views."""
-    if picture.size != sum(int(np.prod(size)) for size in sizes):
+    if picture.size != sum(math.prod(size) for size in sizes):
         raise ValueError(f'an array of the shape {picture.shape} has not the size of a {layout.format} picture with '
                          f'planes of {sizes}')
     flat, planes, start = picture.reshape(-1), [], 0
     for size in sizes:
-        stop = start + int(np.prod(size))
+        stop = start + math.prod(size)
         planes.append(flat[start:stop].reshape(size))
         start = stop
     return planes
@@ -186,7 +187,7 @@ def planes_of(shape: Shape, picture: Any, *, writable: bool = False) -> list[np.
         raise ValueError(f'a {layout.format} picture has {len(sizes)} planes, not {len(planes)}')
     for i, (plane, size) in enumerate(zip(planes, sizes)):
         # The components of a pixel may be an axis of their own or not.
-        if plane.shape not in (size, (size[0], int(np.prod(size[1:])))):
+        if plane.shape not in (size, (size[0], math.prod(size[1:]))):
             raise ValueError(f'a plane of a {shape.width}x{shape.height} {layout.format} picture has the shape {size}, '
                              f'not {plane.shape}')
         if not _rows_are_dense(plane):

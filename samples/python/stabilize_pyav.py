@@ -30,7 +30,7 @@ class Writer:
     def __init__(self, container, source):
         self.container, self.time_base = container, source.time_base
         self.stream = container.add_stream('libx264', rate=source.average_rate)
-        self.stream.pix_fmt, self.stream.time_base = source.pix_fmt, source.time_base
+        self.stream.pix_fmt, self.stream.codec_context.time_base = source.pix_fmt, source.time_base
         self.stream.width, self.stream.height = source.width, source.height
 
     def write_ready(self, stabilizer):

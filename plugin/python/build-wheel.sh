@@ -117,7 +117,7 @@ trap 'rm -rf "$work"' EXIT
 # --no-isolation: the tools that were just installed.
 nice "$tools/bin/python" -m build --no-isolation --wheel --outdir "$work" "$top" >"$log" 2>&1 ||
   die "the wheel could not be built"
-"$tools/bin/auditwheel" repair --wheel-dir "$work/repaired" "$work"/l1l2stab-*.whl >"$log" 2>&1 ||
+"$tools/bin/auditwheel" repair --strip --wheel-dir "$work/repaired" "$work"/l1l2stab-*.whl >"$log" 2>&1 ||
   die "auditwheel could not repair the wheel"
 add_licenses "$work" "$work"/repaired/l1l2stab-*.whl
 find "$out" -name 'l1l2stab-*.whl' -newer "$home/lock" | tail -n 1

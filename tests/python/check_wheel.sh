@@ -16,18 +16,24 @@ echo "size: $(stat -c %s "$wheel") bytes"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp "$wheel" "$here/use_wheel.py" "$work"
 
-# in_venv COMMAND...: installs the wheel in a virtual environment, and runs the check there. The command runs a shell.
+# in_venv FOLDER COMMAND...: installs the wheel of a folder in a virtual environment there, without network, and runs
+# the check with it. The command runs a shell.
 in_venv() {
-  "$@" sh -euc "cd /work 2>/dev/null || cd '$work'
-    \$PYTHON -m venv venv
-    venv/bin/pip install --quiet --disable-pip-version-check --retries 2 --timeout 20 ./${wheel##*/} || exit 77
+  local folder=$1
+  shift
+  "$@" sh -euc "cd '$folder'
+    '$python' -m venv venv
+    venv/bin/pip install --quiet --disable-pip-version-check --no-index --find-links . l1l2stab
     venv/bin/python use_wheel.py"
 }
 
-export PYTHON=$python
-in_venv env
+# The wheel, and those of cffi and numpy
+mkdir "$work/wheels"
+"$python" -m venv "$work/pip"
+"$work/pip/bin/pip" download --quiet --disable-pip-version-check --retries 2 --timeout 20 -d "$work/wheels" "$wheel"
+cp "$here/use_wheel.py" "$work/wheels"
+in_venv "$work/wheels" env
 
 # The same in a Debian of the release that the wheel's Python is from.
 mirror=$(find /etc/apt/sources.list /etc/apt/sources.list.d -name '*.sources' -o -name '*.list' 2>/dev/null | sort |
@@ -38,11 +44,10 @@ if [[ $(id -u) -ne 0 || -z $mirror || $python != /usr/bin/python3* ]] || ! comma
   exit 0
 fi
 root=$work/root
-debootstrap --variant=minbase --include=python3,python3-venv,ca-certificates "$release" "$root" "${mirror// /}" \
+debootstrap --variant=minbase --include=python3,python3-venv "$release" "$root" "${mirror// /}" \
   >"$folder/debootstrap.log" 2>&1 || { tail -n 3 "$folder/debootstrap.log"; exit 1; }
-mkdir "$root/work"
-cp "$wheel" "$here/use_wheel.py" "$root/work"
-cp /etc/resolv.conf "$root/etc/"
-[[ ! -f /etc/pip.conf ]] || cp /etc/pip.conf "$root/etc/"
+mkdir "$root/wheels"
+cp "$work/wheels"/*.whl "$here/use_wheel.py" "$root/wheels"
 [[ -z $(find "$root/usr/lib" -name 'libopencv*' -o -name 'libX11*') ]] || { echo "the root is not minimal"; exit 1; }
-in_venv chroot "$root" env
+echo "in a new Debian:"
+in_venv /wheels chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Stabilizes a video with the frames of imageio: stabilize_imageio.py IN OUT.mp4
 
-imageio runs ffmpeg, or a library with it, to read and write the files.
+imageio runs ffmpeg to read and write the files: `pip install imageio imageio-ffmpeg`.
 """
 import sys
 
@@ -15,9 +15,9 @@ except ImportError:  # before imageio 2.16
 
 
 def main(source, target):
-    reader = imageio.get_reader(source)
+    reader = imageio.get_reader(source, format='FFMPEG')
     fps = reader.get_meta_data()['fps']
-    with imageio.get_writer(target, fps=fps, macro_block_size=2) as writer:
+    with imageio.get_writer(target, format='FFMPEG', fps=fps, macro_block_size=2) as writer:
         for frame in l1l2stab.stabilize(reader, fps=fps, format='RGB'):
             writer.append_data(frame)
 

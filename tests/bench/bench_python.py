@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Informational: 1080p frames through stabilize() in Python, beside the same loop in C: bench_python.py LOOP_PROGRAM
+"""Informational: frames through stabilize() in Python, beside the same loop in C.
+
+usage: bench_python.py LOOP_PROGRAM [WIDTH HEIGHT]      default: 1920 1080
 
 Both programs process the same frames, in turn and several times. On a machine that does other work, the CPU time is
 the one to compare. In C, and in the line "given array", all frames are rendered into the same memory. Otherwise each
@@ -15,7 +17,8 @@ import warnings
 import l1l2stab
 import numpy as np
 
-WIDTH, HEIGHT, CLIP, PLAYED, RUNS = 1920, 1080, 24, 250, 5
+WIDTH, HEIGHT = map(int, sys.argv[2:4] or (1920, 1080))
+CLIP, PLAYED, RUNS = 24, 250, 5
 
 
 def make_clip():

@@ -47,6 +47,9 @@ def test_opencv_frames_are_stabilized(tmp_path):
 
 
 def test_imageio_frames_are_stabilized(tmp_path):
+    imageio = pytest.importorskip('imageio', reason='the Python package imageio is not installed')
+    if hasattr(imageio, 'v2'):  # older ones need no other package
+        pytest.importorskip('imageio_ffmpeg', reason='the Python package imageio-ffmpeg is not installed')
     check('stabilize_imageio.py', tmp_path, 'imageio')
 
 

@@ -199,6 +199,9 @@ def test_an_array_that_is_pushed_while_it_is_held_makes_one_warning(stabilizer, 
         for _ in range(4):
             stabilizer.push(clip[0])
     assert len(caught) == 1 and caught[0].filename == __file__
+    with pytest.warns(RuntimeWarning, match='push copies') as caught:
+        list(l1l2stab.stabilize([clip[0]] * 3))
+    assert len(caught) == 1 and caught[0].filename == __file__
     with warnings.catch_warnings():
         warnings.simplefilter('error')
         clip[1].flags.writeable = False

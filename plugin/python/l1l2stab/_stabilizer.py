@@ -2,6 +2,7 @@
 """The class Stabilizer: the loop of push and pull, and what it tells of each frame."""
 from __future__ import annotations
 
+import sys
 import threading
 import warnings
 import weakref
@@ -119,6 +120,14 @@ class Output:
     info: Info
     pts: Optional[int]
     tag: Any
+
+
+def _callers_level() -> int:
+    """The stacklevel by which a warning names the line outside this package."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back and frame.f_globals.get('__package__') == __package__:
+        level, frame = level + 1, frame.f_back
+    return level
 
 
 def _free(instance: Any, stream: _library.Stream, keep: list[Any]) -> None:
@@ -296,7 +305,7 @@ class Stabilizer:
         if arrays and not self._warned and address in self._stream.addresses and arrays[0].flags.writeable:
             self._warned = True
             warnings.warn('this array was pushed before and is still read: if it has been filled again, push copies',
-                          RuntimeWarning, stacklevel=3)
+                          RuntimeWarning, stacklevel=_callers_level())
 
     def pull(self, out: Optional[Picture] = None, *, render: bool = True) -> Optional[Output]:
         """The oldest frame that is ready, or None if more has to be pushed first, or if all have been pulled.

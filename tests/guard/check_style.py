@@ -13,7 +13,7 @@ MAX_COLUMNS = 120
 
 PLACES = ('.ci', 'docs', 'lib', 'packaging', 'plugin', 'samples', 'subprojects/packagefiles/osqp', 'tests')
 SOURCE = {'.c', '.cpp', '.h', '.py', '.sh'}
-TEXT = SOURCE | {'.html', '.md', '.build', '.map', '.wrap', ''}
+TEXT = SOURCE | {'.html', '.md', '.build', '.map', '.pyi', '.toml', '.wrap', ''}
 SPDX = 'SPDX-License-Identifier: MIT'
 
 

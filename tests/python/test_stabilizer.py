@@ -53,6 +53,25 @@ def test_a_frame_without_time_and_tag_has_none(stabilizer, clip):
     assert output.pts is None and output.tag is None
 
 
+def test_a_filled_border_tells_who_gave_it(clip):
+    with l1l2stab.Stabilizer(conftest.WIDTH, conftest.HEIGHT, 'BGR', conftest.FPS, window=WINDOW, border='fill',
+                             fill_frames=8, crop_ratio=0.8) as stabilizer:
+        with pytest.raises(l1l2stab.Error):
+            stabilizer.border_map()
+        filled = 0
+        for picture in clip:
+            stabilizer.push(picture)
+            for output in stabilizer.ready():
+                made = stabilizer.border_map()
+                assert made.shape == output.picture.shape[:2]
+                neighbors = np.count_nonzero((made != 0) & (made != 255))
+                assert output.info.filled == pytest.approx(neighbors / made.size)
+                assert output.info.extended == pytest.approx(np.count_nonzero(made == 255) / made.size)
+                assert np.all((made == 0) | (made == 255) | (abs(made.astype(int) - 128) <= 8))
+                filled += neighbors
+        assert filled > 0
+
+
 def test_reset_starts_anew_with_the_same_result(stabilizer, clip):
     first = run(stabilizer, clip)
     stabilizer.reset()

@@ -24,6 +24,10 @@ class Settings(TypedDict, total=False):
     interpolation: 'bilinear', 'bicubic' (default) or 'lanczos'
     output_size: 'input' (default): the crop window is zoomed to the size of the input; 'crop': its own size, rounded
         down to even numbers
+    border: 'crop' (default): the crop window is shown; 'fill': the whole frame at its own scale, and neighboring frames
+        fill what it lacks; 'extend': the same without neighbors, mirrored. crop_ratio is the room of the path
+    fill_frames: with border='fill': neighbors are at most so many frames away, [0, 120], default 30. So many frames
+        are kept after they have been pulled
     analysis_size: longer side of the picture in which the motion is measured, pixels, [128, 4096], default 640
     threads: threads that work, with the caller's, [0, 64]; 0, the default: one per core. Frames do not depend on it
     seed: of the random samples of RANSAC, default 1
@@ -44,6 +48,8 @@ class Settings(TypedDict, total=False):
     join: Literal['continuous', 'blend']
     interpolation: Literal['bilinear', 'bicubic', 'lanczos']
     output_size: Literal['input', 'crop']
+    border: Literal['crop', 'fill', 'extend']
+    fill_frames: int
     analysis_size: int
     threads: int
     seed: int

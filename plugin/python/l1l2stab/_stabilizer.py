@@ -24,7 +24,7 @@ _MATRICES = ('F', 'B', 'S', 'C', 'P', 'warp')
 _FLAGS = {name: getattr(lib, 'L1L2STAB_INFO_' + name.upper())
           for name in ('path_start', 'motion_lost', 'path_fallback', 'early', 'motion_failed', 'bridged')}
 _SAME_FIELDS = ('index', 'path_index', 'crop_ratio', 'tracks', 'inliers', 'solver_iterations', 'solver_bound',
-                'quality', 'bypass', 'residual', 'readout')
+                'quality', 'bypass', 'residual', 'readout', 'filled', 'extended')
 _SOURCES = {value: name for name, value in _library.constants('L1L2StabMotionSource').items()}
 _SOLVERS = {value: name for name, value in _library.constants('L1L2StabSolver').items()}
 _STAGES = {name: value for name, value in _library.constants('L1L2StabStage').items() if name != 'count'}
@@ -55,6 +55,8 @@ class Info:
     bypass: of what was rendered, [0, 1]: 0 stabilized, 1 untouched
     residual: rolling-shutter correction: the longest distance by which it moved a sample, pixels
     readout: time from the first row to the last, frames, as estimated; < 0: bottom row first; 0: not known
+    filled: with border='fill': the part of the picture that neighboring frames gave, [0, 1]
+    extended: with 'fill' and 'extend': the part that no frame shows and that was made up, [0, 1]
     path_start: first frame of a path
     motion_lost: the motion into this frame was not measured
     path_fallback: the solver did not converge, and a feasible path was held instead
@@ -82,6 +84,8 @@ class Info:
     bypass: float
     residual: float
     readout: float
+    filled: float
+    extended: float
     path_start: bool
     motion_lost: bool
     path_fallback: bool
@@ -344,6 +348,15 @@ class Stabilizer:
         """Pulls the frames that are ready, one after the other."""
         while (output := self.pull(out, render=render)) is not None:
             yield output
+
+    def border_map(self) -> np.ndarray:
+        """Who gave each pixel of the picture that was pulled last: an array of uint8 of its rows and columns. 0: the
+        frame itself; 128 + k: the frame k frames later (before, if k < 0); 255: it was made up. Needs border='fill' or
+        'extend'."""
+        width, height = self._output_size
+        made = np.empty((height, width), np.uint8)
+        self._call(lib.l1l2stab_border_map, ffi.from_buffer('uint8_t[]', made, require_writable=True), width)
+        return made
 
     def finish(self) -> None:
         """Ends the input: all held frames can be pulled, and reset() makes push() possible again."""

@@ -9,6 +9,7 @@
  *   filled, extended        parts of the output, %: mean, and the worst frame's extended part
  *   flicker                 temporal change of pixels that are filled in two frames in a row, by the truth's
  *   slopes                  gradient energy of filled pixels, by the truth's
+ *   seam                    the change from pixel to pixel where the frame ends, by that 4 pixels beside it
  *   CPU                     of one frame, with tracking, ms: border=crop and border=fill
  *
  * usage: gst-launch-1.0 -q filesrc location=CLIP ! decodebin ! videoconvert ! video/x-raw,format=I420 ! fdsink |
@@ -137,7 +138,7 @@ static double stabilize(const Clip *clip, L1L2StabBorder border, Output *outputs
 typedef struct Sums {
     double fill, nearest, mirror, all; /* squared errors */
     long judged, nearest_judged, all_judged;
-    double flicker[2], slopes[2];
+    double flicker[2], slopes[2], seam[2];
     double filled, extended, worst;
 } Sums;
 
@@ -221,6 +222,17 @@ static double square(double x)
     return x * x;
 }
 
+/* Adds what changes across the border between the frame and a neighbor, if it is between pixel i and the next one, and
+ * what changes 4 pixels on both sides of it. step: from pixel to pixel, along a row or a column. */
+static void add_seam(const Output *o, int i, int step, Sums *sums)
+{
+    const uint8_t *p = o->fill + i;
+    if ((o->provider[i] == 0) == (o->provider[i + step] == 0) || o->provider[i] == 255 || o->provider[i + step] == 255)
+        return;
+    sums->seam[0] += abs(p[step] - p[0]);
+    sums->seam[1] += 0.5 * (abs(p[-3 * step] - p[-4 * step]) + abs(p[5 * step] - p[4 * step]));
+}
+
 static void judge(const Clip *clip, const Output *outputs, Sums *sums)
 {
     const int w = clip->in_width, h = clip->in_height;
@@ -237,6 +249,11 @@ static void judge(const Clip *clip, const Output *outputs, Sums *sums)
         sums->filled += o->info.filled;
         sums->extended += o->info.extended;
         sums->worst = fmax(sums->worst, o->info.extended);
+        for (int y = 4; y + 5 < h; y++)
+            for (int x = 4; x + 5 < w; x++) {
+                add_seam(o, y * w + x, 1, sums);
+                add_seam(o, y * w + x, w, sums);
+            }
         for (int y = 1; y + 1 < h; y++)
             for (int x = 1; x + 1 < w; x++) {
                 const int i = y * w + x;
@@ -289,11 +306,12 @@ int main(int argc, char **argv)
     const double filling = stabilize(&clip, L1L2STAB_BORDER_FILL, outputs);
     judge(&clip, outputs, &sums);
     printf("all %.2f  fill %.2f  nearest %.2f  mirror %.2f dB | filled %.2f  extended %.3f  worst %.2f %% | "
-           "flicker %.2f  slopes %.2f | judged %.2f Mpx | CPU %.1f and %.1f ms\n",
+           "flicker %.2f  slopes %.2f  seam %.2f | judged %.2f Mpx | CPU %.1f and %.1f ms\n",
            psnr(sums.all, sums.all_judged), psnr(sums.fill, sums.judged),
            psnr(sums.nearest, sums.nearest_judged), psnr(sums.mirror, sums.judged),
            100.0 * sums.filled / clip.frames, 100.0 * sums.extended / clip.frames, 100.0 * sums.worst,
            sums.flicker[0] / fmax(sums.flicker[1], 1.0), sums.slopes[0] / fmax(sums.slopes[1], 1.0),
+           sums.seam[0] / fmax(sums.seam[1], 1.0),
            (double)sums.judged * 1e-6, cropping, filling);
     for (int t = 0; t < clip.frames; t++) {
         free(outputs[t].fill);

@@ -46,6 +46,17 @@ def test_opencv_frames_are_stabilized(tmp_path):
     check('stabilize_opencv.py', tmp_path, 'cv2')
 
 
+def test_opencv_shows_a_whole_frame_and_who_gave_it(tmp_path):
+    cv2 = pytest.importorskip('cv2', reason='the Python package cv2 is not installed')
+    source, target = tmp_path / 'in.mp4', tmp_path / 'out.png'
+    write_clip(source)
+    subprocess.run([sys.executable, SAMPLES / 'full_frame_opencv.py', source, target, '30'], check=True, timeout=100)
+    made = cv2.imread(str(target))
+    assert made.shape == (2 * conftest.HEIGHT, 2 * conftest.WIDTH, 3)
+    who = made[conftest.HEIGHT:, conftest.WIDTH:].astype(int)
+    assert (abs(who[..., 0] - who[..., 2]) > 20).any(), 'no neighbor gave anything'
+
+
 def test_imageio_frames_are_stabilized(tmp_path):
     imageio = pytest.importorskip('imageio', reason='the Python package imageio is not installed')
     if hasattr(imageio, 'v2'):  # older ones need no other package

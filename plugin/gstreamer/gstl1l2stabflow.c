@@ -13,6 +13,8 @@
  * Then come the events, draining and flushing, the timer, and the position. */
 #include "gstl1l2stabflow.h"
 
+#include "gstl1l2stabmeta.h"
+
 #include "gstl1l2stabcopymeta.h"
 
 #define GST_CAT_DEFAULT gst_l1l2_stab_debug
@@ -134,6 +136,16 @@ allocate_output (GstL1L2StabFlow * flow, GstBuffer * input, GstBuffer ** output)
   return base->prepare_output_buffer (flow->trans, input, output);
 }
 
+static void
+add_border_map (const GstL1L2StabStream * stream, GstBuffer * output)
+{
+  GstBuffer *border_map = gst_l1l2_stab_stream_border_map (stream);
+
+  if (border_map)
+    gst_l1l2_stab_meta_set_border_map (output, border_map);
+  gst_clear_buffer (&border_map);
+}
+
 static GstFlowReturn
 render (GstL1L2StabFlow * flow, GstClockTime stream_time, GstBuffer * output)
 {
@@ -152,6 +164,8 @@ render (GstL1L2StabFlow * flow, GstClockTime stream_time, GstBuffer * output)
   gst_l1l2_stab_copy_meta_map_regions (output, &map, &stream->out_info);
   gst_l1l2_stab_report_out (&stream->report, output, &info, &map,
       &stream->in_info, &stream->out_info);
+  if (gst_l1l2_stab_settings_border_map (flow->settings))
+    add_border_map (stream, output);
   if (gst_l1l2_stab_settings_post_messages (flow->settings))
     gst_element_post_message (GST_ELEMENT_CAST (flow->trans),
         gst_l1l2_stab_report_message (&stream->report, output, &info,

@@ -60,6 +60,7 @@ scale (GstStructure * structure, const GstVideoMetaTransform * sizes)
   gst_l1l2_stab_meta_set_matrix (structure, "from-source", from_source);
   gst_structure_set (structure, "width", G_TYPE_INT, width,
       "height", G_TYPE_INT, height, NULL);
+  gst_structure_remove_field (structure, "border-map");
 }
 
 static gboolean
@@ -110,4 +111,14 @@ gst_l1l2_stab_meta_add (GstBuffer * output, guint64 frame,
       "source-height", G_TYPE_INT, GST_VIDEO_INFO_HEIGHT (in_info), NULL);
   gst_l1l2_stab_meta_set_matrix (structure, "to-source", map->to_source);
   gst_l1l2_stab_meta_set_matrix (structure, "from-source", map->to_output);
+}
+
+void
+gst_l1l2_stab_meta_set_border_map (GstBuffer * output, GstBuffer * border_map)
+{
+  GstCustomMeta *meta =
+      gst_buffer_get_custom_meta (output, GST_L1L2_STAB_META_NAME);
+
+  gst_structure_set (gst_custom_meta_get_structure (meta), "border-map",
+      GST_TYPE_BUFFER, border_map, NULL);
 }

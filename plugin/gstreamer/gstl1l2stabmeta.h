@@ -21,6 +21,10 @@ void gst_l1l2_stab_meta_add (GstBuffer * output, guint64 frame,
     const GstL1L2StabMap * map, const GstVideoInfo * in_info,
     const GstVideoInfo * out_info);
 
+/* Adds who gave each pixel to the meta of an output frame, which must be there: one byte a pixel, row by row. */
+void gst_l1l2_stab_meta_set_border_map (GstBuffer * output,
+    GstBuffer * border_map);
+
 /* Sets a field to a matrix, as an array of nine doubles, row by row. */
 void gst_l1l2_stab_meta_set_matrix (GstStructure * structure,
     const gchar * field, const gdouble matrix[9]);

@@ -25,6 +25,7 @@ enum
   PROP_MOTION_IN,
   PROP_MOTION_OUT,
   PROP_POST_MESSAGES,
+  PROP_BORDER_MAP,
 };
 
 /* A change takes effect with the next caps, and for a text or file name when the element starts. So these are changed
@@ -67,6 +68,12 @@ install_live (GObjectClass * klass, const L1L2StabConfig * defaults)
       g_param_spec_boolean ("post-messages", "Post messages",
           "Post an element message \"l1l2stab-frame\" for each frame that goes "
           "out, with its motion, path, warp and quality",
+          FALSE, LIVE_FLAGS));
+  g_object_class_install_property (klass, PROP_BORDER_MAP,
+      g_param_spec_boolean ("border-map", "Border map",
+          "With border=fill or extend: tell in the meta of each frame who gave "
+          "each pixel, in a buffer of one byte per pixel: 0 the frame itself, "
+          "128 + k the frame k frames later, 255 nobody",
           FALSE, LIVE_FLAGS));
 }
 
@@ -253,6 +260,8 @@ find_field (GstL1L2StabSettings * settings, guint id)
       return &settings->motion_out;
     case PROP_POST_MESSAGES:
       return &settings->post_messages;
+    case PROP_BORDER_MAP:
+      return &settings->border_map;
     default:
       return NULL;
   }
@@ -411,6 +420,17 @@ gst_l1l2_stab_settings_post_messages (GstL1L2StabSettings * settings)
   post_messages = settings->post_messages;
   GST_OBJECT_UNLOCK (settings->object);
   return post_messages;
+}
+
+gboolean
+gst_l1l2_stab_settings_border_map (GstL1L2StabSettings * settings)
+{
+  gboolean border_map;
+
+  GST_OBJECT_LOCK (settings->object);
+  border_map = settings->border_map;
+  GST_OBJECT_UNLOCK (settings->object);
+  return border_map;
 }
 
 void

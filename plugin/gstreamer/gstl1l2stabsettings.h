@@ -22,6 +22,7 @@ typedef struct
   gboolean has_caps;            /* ... if there are caps */
   gboolean bypass;
   gboolean post_messages;
+  gboolean border_map;
   gchar *motion_in, *motion_out;        /* file names, or NULL */
   gchar *region;                /* a text, or NULL */
   gchar *mask;                  /* a file name, or NULL */
@@ -61,6 +62,7 @@ void gst_l1l2_stab_settings_sample (GstL1L2StabSettings * settings,
 gboolean gst_l1l2_stab_settings_sample_bypass (GstL1L2StabSettings * settings,
     GstClockTime stream_time);
 gboolean gst_l1l2_stab_settings_post_messages (GstL1L2StabSettings * settings);
+gboolean gst_l1l2_stab_settings_border_map (GstL1L2StabSettings * settings);
 
 /* Copies of the texts and file names, each to be freed or NULL. */
 void gst_l1l2_stab_settings_dup_files (GstL1L2StabSettings * settings,

@@ -323,6 +323,25 @@ gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output,
       &motion, info) ? GST_FLOW_OK : GST_FLOW_ERROR;
 }
 
+GstBuffer *
+gst_l1l2_stab_stream_border_map (const GstL1L2StabStream * stream)
+{
+  const gint width = GST_VIDEO_INFO_WIDTH (&stream->out_info);
+  const gint height = GST_VIDEO_INFO_HEIGHT (&stream->out_info);
+  GstBuffer *buffer = gst_buffer_new_allocate (NULL, (gsize) width * height,
+      NULL);
+  GstMapInfo memory;
+  L1L2StabResult result = L1L2STAB_ERR_NOMEM;
+
+  if (gst_buffer_map (buffer, &memory, GST_MAP_WRITE)) {
+    result = l1l2stab_border_map (stream->stab, memory.data, width);
+    gst_buffer_unmap (buffer, &memory);
+  }
+  if (result != L1L2STAB_OK)
+    gst_clear_buffer (&buffer);
+  return buffer;
+}
+
 GstFlowReturn
 gst_l1l2_stab_stream_finish (GstL1L2StabStream * stream)
 {

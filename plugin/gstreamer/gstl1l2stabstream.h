@@ -78,6 +78,10 @@ void gst_l1l2_stab_stream_set_bypass (GstL1L2StabStream * stream,
 GstFlowReturn gst_l1l2_stab_stream_render (GstL1L2StabStream * stream,
     GstBuffer * output, L1L2StabInfo * info);
 
+/* Who gave each pixel of the frame that was rendered last: a new buffer of one byte a pixel, row by row. NULL: with
+ * border=crop there is nothing to tell. */
+GstBuffer *gst_l1l2_stab_stream_border_map (const GstL1L2StabStream * stream);
+
 /* Ends the path: all frames that are held become ready. Only after reset() can frames be pushed again. */
 GstFlowReturn gst_l1l2_stab_stream_finish (GstL1L2StabStream * stream);
 

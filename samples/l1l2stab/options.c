@@ -79,7 +79,7 @@ static GstElement *new_stabilizer(GError **error)
 static gboolean is_setting(const GstElement *element, const GParamSpec *spec)
 {
     return spec->owner_type == G_OBJECT_TYPE(element) && (spec->flags & G_PARAM_WRITABLE) &&
-           !g_str_equal(spec->name, "post-messages");
+           !g_str_equal(spec->name, "post-messages") && !g_str_equal(spec->name, "border-map");
 }
 
 static GParamSpec *find_setting(GstElement *element, const char *name)

@@ -74,6 +74,55 @@ GST_START_TEST (every_frame_comes_out_once_and_its_shares_are_told)
 
 GST_END_TEST;
 
+/* How many pixels of a frame the map in its meta says were given by neighbors. -1: there is no map. */
+static gint
+count_filled (GstBuffer * buffer)
+{
+  GstCustomMeta *meta = gst_buffer_get_custom_meta (buffer, "GstL1L2StabMeta");
+  GstBuffer *border_map = NULL;
+  GstMapInfo memory;
+  gint n = 0;
+  gsize i;
+
+  if (!gst_structure_get (gst_custom_meta_get_structure (meta), "border-map",
+          GST_TYPE_BUFFER, &border_map, NULL))
+    return -1;
+  fail_unless (gst_buffer_map (border_map, &memory, GST_MAP_READ));
+  fail_unless_equals_int (memory.size, 160 * 120);
+  for (i = 0; i < memory.size; i++)
+    n += memory.data[i] != 0 && memory.data[i] != 255;
+  gst_buffer_unmap (border_map, &memory);
+  gst_buffer_unref (border_map);
+  return n;
+}
+
+GST_START_TEST (the_meta_tells_who_gave_each_pixel_where_it_is_asked_to)
+{
+  GstHarness *h = shaken (__i__ == 2 ? "crop" : "fill");
+  gint sum = 0;
+  guint i;
+
+  g_object_set (h->element, "border-map", __i__ > 0, NULL);
+  play (h);
+  for (i = 0; i < N_FRAMES; i++)
+    push_frame (h, i);
+  gst_harness_push_event (h, gst_event_new_eos ());
+  for (i = 0; i < N_FRAMES; i++) {
+    GstBuffer *buffer = gst_harness_pull (h);
+    const gint n = count_filled (buffer);
+
+    fail_unless_equals_int (n >= 0, __i__ == 1);
+    sum += n;
+    gst_buffer_unref (buffer);
+  }
+  if (__i__ == 1)
+    fail_unless (ABS (mean_of (h, "filled-mean") - (gdouble) sum / N_FRAMES /
+            (160 * 120)) < 1e-9);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 GST_START_TEST (kept_frames_go_back_at_the_end_of_stream_and_at_a_flush)
 {
   GstHarness *h = shaken ("fill");
@@ -179,6 +228,8 @@ fill_suite (void)
   tcase_add_checked_fixture (tcase, make_folder, remove_folder);
   tcase_add_loop_test (tcase,
       every_frame_comes_out_once_and_its_shares_are_told, 0, 3);
+  tcase_add_loop_test (tcase,
+      the_meta_tells_who_gave_each_pixel_where_it_is_asked_to, 0, 3);
   tcase_add_loop_test (tcase,
       kept_frames_go_back_at_the_end_of_stream_and_at_a_flush, 0, 2);
   tcase_add_test (tcase, a_pool_without_room_for_kept_frames_is_not_starved);

@@ -134,6 +134,7 @@ static const struct
   {"crop-ratio", GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING},
   {"bypass", GST_PARAM_CONTROLLABLE | GST_PARAM_MUTABLE_PLAYING},
   {"post-messages", GST_PARAM_MUTABLE_PLAYING},
+  {"border-map", GST_PARAM_MUTABLE_PLAYING},
   {"stats", 0},
 };
 

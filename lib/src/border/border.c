@@ -34,6 +34,7 @@ struct L1L2Border {
     Slot slot[L1L2_BORDER_MAX_SOURCES];
     L1L2BorderSource source[L1L2_BORDER_MAX_SOURCES];
     L1L2BorderComposite composite;
+    L1L2BorderMissing *missing;
 };
 
 static bool view_init(L1L2BorderView *view, int width, int height)
@@ -98,7 +99,8 @@ static bool build(L1L2Border *b)
         return false;
     if (cfg->reach == 0)
         return true;
-    if (!l1l2_border_grays_init(&b->grays, cfg->format, cfg->width, cfg->height, 2 * cfg->reach + 1) ||
+    b->missing = l1l2_border_missing_new();
+    if (!b->missing || !l1l2_border_grays_init(&b->grays, cfg->format, cfg->width, cfg->height, 2 * cfg->reach + 1) ||
         !view_init(&b->own_view, b->grays.width, b->grays.height))
         return false;
     for (int i = 0; i < L1L2_BORDER_MAX_SOURCES; i++)
@@ -132,6 +134,7 @@ void l1l2_border_free(L1L2Border *b)
         l1l2_mem_free(b->source[i].field.agreement);
         l1l2_mem_free(b->source[i].offset);
     }
+    l1l2_border_missing_free(b->missing);
     l1l2_border_grays_clear(&b->grays);
     l1l2_mem_free(b->own_view.level);
     l1l2_warp_mesh_clear(&b->own_mesh);
@@ -277,7 +280,7 @@ static void render_sources(L1L2Border *b, const L1L2BorderJob *job, const L1L2Wa
 {
     L1L2BorderComposite *c = &b->composite;
     const L1L2BorderNeed need = {job->t, &job->own->affine, b->cfg.width, b->cfg.height, c->strips};
-    const L1L2BorderChoice choice = l1l2_border_choose(&need, job->neighbors, job->count);
+    const L1L2BorderChoice choice = l1l2_border_choose(b->missing, &need, job->neighbors, job->count);
     c->sources = choice.count;
     if (choice.count == 0)
         return;

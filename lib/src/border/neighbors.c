@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "common/mem.h"
+
 enum {
     LATTICE = 64,        /* points along each axis of the output */
     MARGIN_PX = 2,       /* a neighbor's outermost pixels are not relied on */
@@ -22,17 +24,27 @@ typedef struct MissingPoint {
     bool covered;
 } MissingPoint;
 
-typedef struct Missing {
+struct L1L2BorderMissing {
     int count;
     MissingPoint point[LATTICE * LATTICE];
-} Missing;
+};
+
+L1L2BorderMissing *l1l2_border_missing_new(void)
+{
+    return l1l2_mem_new(1, sizeof(L1L2BorderMissing));
+}
+
+void l1l2_border_missing_free(L1L2BorderMissing *missing)
+{
+    l1l2_mem_free(missing);
+}
 
 static bool inside(L1L2Point p, double half_w, double half_h)
 {
     return fabs(p.x) <= half_w && fabs(p.y) <= half_h;
 }
 
-static void find_missing(Missing *missing, const L1L2BorderNeed *need)
+static void find_missing(L1L2BorderMissing *missing, const L1L2BorderNeed *need)
 {
     const double width = need->width, height = need->height, half_w = 0.5 * width, half_h = 0.5 * height;
     missing->count = 0;
@@ -51,7 +63,7 @@ typedef struct Search {
     const L1L2BorderNeighbor *neighbors;
     int count;
     L1L2BorderChoice choice;
-    Missing missing;
+    L1L2BorderMissing *missing;
 } Search;
 
 static bool covers(const Search *search, int neighbor, const MissingPoint *point)
@@ -70,8 +82,8 @@ static int64_t distance(const Search *search, int neighbor)
 static int gain_of(const Search *search, int neighbor)
 {
     int gain = 0;
-    for (int i = 0; i < search->missing.count; i++)
-        gain += !search->missing.point[i].covered && covers(search, neighbor, &search->missing.point[i]);
+    for (int i = 0; i < search->missing->count; i++)
+        gain += !search->missing->point[i].covered && covers(search, neighbor, &search->missing->point[i]);
     return gain;
 }
 
@@ -83,8 +95,8 @@ static void choose(Search *search, int neighbor)
     for (; place > 0 && distance(search, choice->neighbor[place - 1]) > distance(search, neighbor); place--)
         choice->neighbor[place] = choice->neighbor[place - 1];
     choice->neighbor[place] = neighbor;
-    for (int i = 0; i < search->missing.count; i++) {
-        MissingPoint *point = &search->missing.point[i];
+    for (int i = 0; i < search->missing->count; i++) {
+        MissingPoint *point = &search->missing->point[i];
         point->covered = point->covered || covers(search, neighbor, point);
     }
 }
@@ -92,7 +104,7 @@ static void choose(Search *search, int neighbor)
 /* The nearest neighbors that are of use. Of two that are as far, the one that adds more comes first. */
 static void choose_near(Search *search)
 {
-    const double least = fmax(least_near_share * search->missing.count, 1.0);
+    const double least = fmax(least_near_share * search->missing->count, 1.0);
     for (int64_t d = 1; d <= L1L2_BORDER_MAX_FRAMES; d++) {
         int at[2] = {-1, -1}, gain[2] = {0, 0}, found = 0;
         for (int k = 0; k < search->count && found < 2; k++)
@@ -113,7 +125,7 @@ static void choose_near(Search *search)
 static void choose_far(Search *search)
 {
     while (search->choice.count < L1L2_BORDER_MAX_SOURCES) {
-        int best = -1, most = (int)fmax(least_far_share * search->missing.count, 1.0) - 1;
+        int best = -1, most = (int)fmax(least_far_share * search->missing->count, 1.0) - 1;
         for (int k = 0; k < search->count; k++) {
             const int gain = gain_of(search, k);
             if (gain > most) {
@@ -161,8 +173,8 @@ static void share_out(Search *search)
 {
     const double reach_x = part_reach * search->need->width / (LATTICE - 1);
     const double reach_y = part_reach * search->need->height / (LATTICE - 1);
-    for (int i = 0; i < search->missing.count; i++) {
-        const MissingPoint *point = &search->missing.point[i];
+    for (int i = 0; i < search->missing->count; i++) {
+        const MissingPoint *point = &search->missing->point[i];
         int shown = 0;
         while (shown < search->choice.count && !covers(search, search->choice.neighbor[shown], point))
             shown++;
@@ -171,10 +183,11 @@ static void share_out(Search *search)
     }
 }
 
-L1L2BorderChoice l1l2_border_choose(const L1L2BorderNeed *need, const L1L2BorderNeighbor *neighbors, int count)
+L1L2BorderChoice l1l2_border_choose(L1L2BorderMissing *missing, const L1L2BorderNeed *need,
+                                    const L1L2BorderNeighbor *neighbors, int count)
 {
-    Search search = {.need = need, .neighbors = neighbors, .count = count};
-    find_missing(&search.missing, need);
+    Search search = {.need = need, .neighbors = neighbors, .count = count, .missing = missing};
+    find_missing(missing, need);
     choose_near(&search);
     choose_far(&search);
     share_out(&search);

@@ -57,7 +57,15 @@ typedef struct L1L2BorderNeed {
     L1L2BorderStrips strips;
 } L1L2BorderNeed;
 
-L1L2BorderChoice l1l2_border_choose(const L1L2BorderNeed *need, const L1L2BorderNeighbor *neighbors, int count);
+/* Memory for a choice: too much for the stack of some threads. */
+typedef struct L1L2BorderMissing L1L2BorderMissing;
+
+/* NULL when out of memory. */
+L1L2BorderMissing *l1l2_border_missing_new(void);
+void l1l2_border_missing_free(L1L2BorderMissing *missing);
+
+L1L2BorderChoice l1l2_border_choose(L1L2BorderMissing *missing, const L1L2BorderNeed *need,
+                                    const L1L2BorderNeighbor *neighbors, int count);
 
 static inline bool l1l2_border_is_empty(const L1L2WarpRect *rect)
 {

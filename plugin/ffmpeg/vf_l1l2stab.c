@@ -14,6 +14,7 @@
 
 #include "libavutil/avconfig.h"
 #include "libavutil/common.h"
+#include "libavutil/eval.h"
 #include "libavutil/frame.h"
 #include "libavutil/log.h"
 #include "libavutil/mathematics.h"
@@ -46,6 +47,7 @@ typedef struct L1L2StabContext {
 
     double lambda, crop_ratio;
     int bypass, window, overlap, join, motion_model, rolling_shutter, interpolation, output_size, border, fill_frames;
+    char *region;          ///< as the user wrote it; NULL: the whole frame
 
     L1L2Stab *stab;        ///< NULL before the first frame
     L1L2StabConfig config; ///< of stab
@@ -109,6 +111,8 @@ static const AVOption l1l2stab_options[] = {
         CHOICE("extend", "the frame mirrored at its sides", L1L2STAB_BORDER_EXTEND, "border"),
     { "fill_frames", "with border=fill: how many frames away the frames are that fill it, at most",
       OFFSET(fill_frames), AV_OPT_TYPE_INT, { .i64 = 30 }, 0, 120, FLAGS },
+    { "region", "part of the frame in which the motion is measured: x,y,width,height in pixels, or with % signs in parts",
+      OFFSET(region), AV_OPT_TYPE_STRING, { .str = NULL }, 0, 0, FLAGS },
     { NULL }
 };
 
@@ -311,6 +315,31 @@ static void config_from_frame(L1L2StabConfig *config, const AVFrame *frame)
     config->pixel_aspect = pixel_aspect(frame->sample_aspect_ratio);
 }
 
+/* The region in parts of the frame, whose size the config has. The library checks whether it lies in the frame. */
+static int set_region(AVFilterContext *ctx, L1L2StabConfig *config)
+{
+    const L1L2StabContext *s = ctx->priv;
+    const char *text = s->region;
+
+    if (!text || !*text)
+        return 0;
+    for (int i = 0; i < 4; i++) {
+        char *end;
+        const double value = av_strtod(text, &end), side = i % 2 ? config->height : config->width;
+        const int is_number = end != text, is_percent = *end == '%';
+
+        config->region[i] = value / (is_percent ? 100 : side);
+        end += is_percent;
+        if (!is_number || *end != (i < 3 ? ',' : '\0')) {
+            av_log(ctx, AV_LOG_ERROR, "region is \"%s\": give x,y,width,height as four numbers, in pixels of the frame "
+                   "or with %% signs in parts of it, such as region='10%%,0,80%%,50%%'.\n", s->region);
+            return AVERROR(EINVAL);
+        }
+        text = end + 1;
+    }
+    return 0;
+}
+
 static int fits(const L1L2StabContext *s, const AVFrame *frame)
 {
     L1L2StabConfig other = s->config;
@@ -325,10 +354,14 @@ static int start(AVFilterContext *ctx, const AVFrame *frame)
 {
     L1L2StabContext *s = ctx->priv;
     L1L2StabResult result;
+    int ret;
 
     l1l2stab_free(&s->stab);
     config_from_options(&s->config, ctx);
     config_from_frame(&s->config, frame);
+    ret = set_region(ctx, &s->config);
+    if (ret < 0)
+        return ret;
     result = l1l2stab_config_output_size(&s->config, &s->width, &s->height);
     if (result == L1L2STAB_OK)
         result = l1l2stab_create(&s->stab, &s->config);

@@ -143,7 +143,9 @@ class Graphs(unittest.TestCase):
 
     def test_wrong_settings_are_refused_with_the_reason(self):
         for graph, reason in {'l1l2stab=window=10:overlap=20': 'overlap', 'scale=8:8,l1l2stab': 'width',
-                              'l1l2stab=lambda=-1': 'lambda'}.items():
+                              'l1l2stab=lambda=-1': 'lambda', 'l1l2stab=region=left': 'x,y,width,height',
+                              "l1l2stab=region='0,0,10,10'": 'region is', "l1l2stab=region='0,0,50%,2x'": '2x',
+                              'l1l2stab=border=fill:output_size=crop': 'border=fill'}.items():
             with self.subTest(graph=graph):
                 self.assertIn(reason, run(*source, '-vf', graph, '-f', 'null', '-', fails=True)[1])
 

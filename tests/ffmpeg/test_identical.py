@@ -118,9 +118,11 @@ class Identical(unittest.TestCase):
     def test_every_setting_does_the_same(self):
         for settings in ('lambda=0.05', 'lambda=3 crop-ratio=0.75', 'overlap=4', 'join=blend', 'interpolation=lanczos',
                          'interpolation=bilinear', 'motion-model=affine', 'motion-model=translation',
-                         'rolling-shutter=none', 'rolling-shutter=homography', 'output-size=crop', 'bypass=true'):
+                         'rolling-shutter=none', 'rolling-shutter=homography', 'output-size=crop', 'bypass=true',
+                         'border=fill crop-ratio=0.8 fill-frames=8', 'border=extend', 'region=0,0,50%,60%',
+                         'region=10,20,100,90'):
             with self.subTest(settings=settings):
-                options = ':'.join([f'window={WINDOW}', *settings.replace('-', '_').split()])
+                options = ':'.join([f'window={WINDOW}', *settings.replace('-', '_').replace(',', '\\,').split()])
                 self.assert_identical(f'{parsed(film, "I420")} ! l1l2stab window={WINDOW} {settings}',
                                       *small_ffmpeg.raw(film, WIDTH, HEIGHT), '-vf', f'l1l2stab={options}')
 

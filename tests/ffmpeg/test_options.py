@@ -12,13 +12,13 @@ import clip
 from clip import Gst
 from gi.repository import GObject
 
-# `threads` is an option of every filter. Messages, statistics and motion files belong to GStreamer: they are posted on
-# its bus, and have its stream time.
-ELEMENT_ALONE = {'threads', 'post_messages', 'stats', 'motion_in', 'motion_out'}
+# `threads` is an option of every filter. Messages, statistics, metas and motion files belong to GStreamer: they are
+# posted on its bus, and have its stream time. A mask is a file of its own.
+ELEMENT_ALONE = {'threads', 'post_messages', 'stats', 'border_map', 'motion_in', 'motion_out', 'mask'}
 COMMANDS = {'lambda', 'crop_ratio', 'bypass'}
 PLUGIN = Path(__file__).parents[2] / 'plugin/ffmpeg'
 CHANGED = ['configure', 'doc/filters.texi', 'libavfilter/Makefile', 'libavfilter/allfilters.c']
-TYPES = {'<double>': float, '<int>': int, '<boolean>': bool}
+TYPES = {'<double>': float, '<int>': int, '<boolean>': bool, '<string>': str}
 
 clip.begin()
 
@@ -52,8 +52,10 @@ def filter_options():
         if option and 'V' in option[3]:
             name = option[1]
             span = re.search(r'\(from (\S+) to (\S+)\)', line)
-            default = re.search(r'\(default (\S+)\)$', line)[1]
-            if option[2] == '<boolean>':
+            default = (re.search(r'\(default (\S+)\)$', line) or [None, None])[1]
+            if option[2] == '<string>':
+                options[name] = (None, None, default, {})
+            elif option[2] == '<boolean>':
                 options[name] = (None, None, default == 'true', {})
             else:
                 of = TYPES[option[2]]

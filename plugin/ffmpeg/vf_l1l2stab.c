@@ -111,7 +111,7 @@ static const AVOption l1l2stab_options[] = {
         CHOICE("extend", "the frame mirrored at its sides", L1L2STAB_BORDER_EXTEND, "border"),
     { "fill_frames", "with border=fill: how many frames away the frames are that fill it, at most",
       OFFSET(fill_frames), AV_OPT_TYPE_INT, { .i64 = 30 }, 0, 120, FLAGS },
-    { "region", "part of the frame in which the motion is measured: x,y,width,height in pixels, or with % signs in parts",
+    { "region", "part of the frame that is measured: x,y,width,height in pixels, or with % signs in parts of it",
       OFFSET(region), AV_OPT_TYPE_STRING, { .str = NULL }, 0, 0, FLAGS },
     { NULL }
 };

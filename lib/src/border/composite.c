@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "common/mem.h"
-
 enum {
     RUN = L1L2_WARP_RUN_SAMPLES,
     BAND_ROWS = 16,

@@ -84,7 +84,7 @@ class Options(unittest.TestCase):
                 if least is not None:
                     self.assertAlmostEqual(ours[0], least)
                     self.assertAlmostEqual(ours[1], most)
-                if isinstance(default, (bool, str)):
+                if default is None or isinstance(default, (bool, str)):
                     self.assertEqual(ours[2], default)
                 else:
                     self.assertAlmostEqual(float(ours[2]), default)

@@ -64,7 +64,8 @@ L1L2QueuedFrame *l1l2_frame_queue_newest(const L1L2FrameQueue *queue)
 
 static void release_oldest_kept(L1L2FrameQueue *queue)
 {
-    const L1L2StabFrame frame = l1l2_frame_queue_at(queue, queue->kept++)->frame;
+    const L1L2StabFrame frame = l1l2_frame_queue_at(queue, queue->kept)->frame;
+    queue->kept++;
     if (frame.release)
         frame.release(frame.opaque);
 }

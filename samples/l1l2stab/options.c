@@ -107,12 +107,41 @@ static gboolean apply_setting(GstElement *element, const char *name, const char 
     return ok;
 }
 
+static void keep_message(void *cookie, L1L2StabLogLevel level, const char *message)
+{
+    (void)level;
+    g_free(*(char **)cookie);
+    *(char **)cookie = g_strdup(message);
+}
+
+/* Settings that are valid alone may exclude each other: the library says so, for frames of any size. */
+static gboolean settings_fit(GstElement *stabilizer, GError **error)
+{
+    L1L2StabConfig config;
+    char *reason = NULL;
+    int join, border, output_size;
+    gboolean ok = TRUE;
+    l1l2stab_config_init(&config, sizeof config);
+    g_object_get(stabilizer, "window", &config.window, "overlap", &config.overlap, "join", &join, "border", &border,
+                 "output-size", &output_size, NULL);
+    config.format = L1L2STAB_FORMAT_GRAY8;
+    config.width = config.height = 640;
+    config.join = (L1L2StabJoin)join;
+    config.border = (L1L2StabBorder)border;
+    config.output_size = (L1L2StabOutputSize)output_size;
+    config.logger = (L1L2StabLogger){.write = keep_message, .cookie = &reason, .max_level = L1L2STAB_LOG_ERROR};
+    if (l1l2stab_config_delay(&config) < 0)
+        ok = fault(error, EXIT_USAGE, "%s", reason ? reason : "these settings exclude each other");
+    g_free(reason);
+    return ok;
+}
+
 gboolean options_apply(const Options *options, GstElement *stabilizer, GError **error)
 {
     for (guint i = 0; i + 1 < options->settings->len; i += 2)
         if (!apply_setting(stabilizer, options->settings->pdata[i], options->settings->pdata[i + 1], error))
             return FALSE;
-    return TRUE;
+    return settings_fit(stabilizer, error);
 }
 
 static void add_setting(Options *options, const char *name, const char *text)

@@ -38,6 +38,8 @@ struct Report {
     GArray *samples;
     GstClockTime first_time;
     double crop, lambda;                 /* of the last frame */
+    gboolean is_whole;                   /* the border is not cropped */
+    double filled, extended;             /* sums of the frames' parts */
     ReportPairs *pairs;
 };
 
@@ -70,11 +72,14 @@ Report *report_new(const Options *options, Input *input, GstElement *stabilizer,
                    gint64 duration)
 {
     Report *report = g_new0(Report, 1);
+    int border = L1L2STAB_BORDER_CROP;
     report->options = options;
     report->orientation = orientation ? orientation : "identity";
     report->samples = g_array_new(FALSE, TRUE, sizeof(Sample));
     analysis_begin(&report->analysis, options, input);
     report->pairs = report_pairs_new(stabilizer, duration);
+    g_object_get(stabilizer, "border", &border, NULL);
+    report->is_whole = border != L1L2STAB_BORDER_CROP;
     g_object_set(stabilizer, "post-messages", TRUE, NULL);
     return report;
 }
@@ -117,6 +122,7 @@ void report_add(Report *report, const GstStructure *message)
 {
     Sample sample = {0};
     guint64 time = 0;
+    double filled, extended;
     if (!gst_structure_has_name(message, "l1l2stab-frame"))
         return;
     const guint count = report->samples->len;
@@ -130,6 +136,10 @@ void report_add(Report *report, const GstStructure *message)
     gst_structure_get(message, "timestamp", G_TYPE_UINT64, &time, "quality", G_TYPE_DOUBLE, &sample.quality,
                       "crop-ratio", G_TYPE_DOUBLE, &sample.crop, "lambda", G_TYPE_DOUBLE, &report->lambda, NULL);
     report->crop = sample.crop;
+    if (gst_structure_get(message, "filled", G_TYPE_DOUBLE, &filled, "extended", G_TYPE_DOUBLE, &extended, NULL)) {
+        report->filled += filled;
+        report->extended += extended;
+    }
     if (count == 0)
         report->first_time = time;
     sample.seconds = (double)(gint64)(time - report->first_time) / GST_SECOND;
@@ -246,6 +256,9 @@ static GString *make_json(const Report *report)
                            analysis->lost, analysis->poor);
     add_field(json, "frame-rate", analysis->config.frame_rate, 3);
     add_field(json, "crop-ratio", report->crop, 3);
+    g_string_append_printf(json, ", \"whole\": %s", report->is_whole ? "true" : "false");
+    add_field(json, "filled-mean", report->filled / MAX(report->samples->len, 1), 5);
+    add_field(json, "extended-mean", report->extended / MAX(report->samples->len, 1), 5);
     add_field(json, "lambda", report->lambda, 3);
     add_field(json, "shake-before", analysis->shake, 4);
     add_field(json, "shake-after", analysis->shake * left, 4);

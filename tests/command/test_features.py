@@ -77,6 +77,28 @@ class Parts(Case):
         self.assertIn('no frame', run.stderr)
 
 
+class WholeFrames(Case):
+    def test_a_filled_border_keeps_the_scale_and_a_cropped_one_enlarges(self):
+        """The film pans over a pattern: its detail is as fine as before if the frame is shown whole."""
+        def detail(path):
+            rows = self.picture(path, 30)
+            return sum(abs(a - b) for row in rows for a, b in zip(row, row[1:]))
+        for border in ('fill', 'crop'):
+            self.run_command(self.clip, '--border', border, '--crop-ratio=0.75', '--report=report', '-o',
+                             f'{border}.mp4')
+        fill, crop = (json.loads((self.path / 'report' / f'{name}.json').read_text()) for name in ('fill', 'crop'))
+        self.assertTrue(fill['whole'] and not crop['whole'])
+        self.assertEqual(crop['filled-mean'] + crop['extended-mean'], 0)
+        self.assertEqual(len(probe.File(self.path / 'fill.mp4').frames), len(probe.File(self.clip).frames))
+        self.assertGreater(detail(self.path / 'fill.mp4'), 1.1 * detail(self.path / 'crop.mp4'))
+
+    def test_a_whole_frame_cannot_have_the_crop_windows_size(self):
+        run = self.run_command(self.clip, '--border=fill', '--output-size=crop', '-o', 'a.mp4', code=2)
+        self.assertIn('border=fill', run.stderr)
+        run = self.run_command(self.clip, '--window=10', '--overlap=20', '-o', 'a.mp4', code=2)
+        self.assertIn('overlap is 20', run.stderr)
+
+
 class Comparison(Case):
     def test_side_shows_the_source_on_the_left(self):
         self.run_command(self.clip, '--compare=side', '--encoder=ffv1', '-o', 'side.mkv')

@@ -35,6 +35,7 @@ QUOTED = {
     'samples/l1l2stab': ['samples/l1l2stab'],
     'tests/bench': ['tests/bench', 'tests/support', SOURCE],
     'tests/clients': ['tests/clients'],
+    'tests/fuzz': ['tests/fuzz', 'plugin/gstreamer', SOURCE],
     'tests/gstreamer': ['tests/gstreamer', 'tests/support'],
     'tests/lib': ['tests/lib', 'tests/support', SOURCE],
     'tests/support': ['tests/support'],
@@ -50,7 +51,7 @@ FFMPEG_HEADER = r'((libav|libsw)[a-z]+/)?[a-z_]+\.h'
 FOREIGN = [
     (r'opencv', r'lib/src/motion/vision_opencv\.cpp|tests/(bench/bench_|clients/|lib/motion/)opencv_.*'),
     (r'(osqp|qdldl|amd)\b', r'lib/src/path/qp_osqp\.c'),
-    (r'(gst|glib|gio|gobject|gmodule)\b', r'(plugin/gstreamer|tests/gstreamer|samples)/.*'),
+    (r'(gst|glib|gio|gobject|gmodule)\b', r'(plugin/gstreamer|tests/gstreamer|tests/fuzz|samples)/.*'),
     (r'(libav|libsw)[a-z]+/', r'samples/(l1l2stab/.*|stabilize-libav\.c)'),
     (r'check\.h', r'tests/.*'),
     (r'.*intrin\.h', r'lib/src/.*'),

@@ -147,8 +147,8 @@ static void push_frame(Play *play)
     gst_mini_object_weak_ref(GST_MINI_OBJECT_CAST(buffer), on_freed, play);
     play->created++;
     play->next++;
-    if (gst_harness_push(play->h, buffer) != GST_FLOW_OK)
-        allow_drop(play);
+    if (gst_harness_push(play->h, buffer) != GST_FLOW_OK || play->answer != GST_FLOW_OK)
+        allow_drop(play); /* an event that drains tries each frame once */
 }
 
 /* --- events and queries --- */
@@ -364,6 +364,12 @@ static void choose_answer(Play *play)
     GST_PAD_STREAM_UNLOCK(play->h->sinkpad);
 }
 
+static void set_upstream_latency(Play *play)
+{
+    const GstClockTime latency = fuzz_bits(&play->in, 8);
+    gst_harness_set_upstream_latency(play->h, GST_CLOCK_TIME_IS_VALID(latency) ? latency : latency - 1);
+}
+
 static void act(Play *play)
 {
     switch (fuzz_below(&play->in, 32)) {
@@ -378,7 +384,7 @@ static void act(Play *play)
     case 28: let_time_pass(play); break;
     case 29: choose_answer(play); break;
     case 30: g_atomic_int_set(&play->failing, fuzz_below(&play->in, 2)); break;
-    case 31: gst_harness_set_upstream_latency(play->h, fuzz_bits(&play->in, 8)); break;
+    case 31: set_upstream_latency(play); break;
     default: push_frame(play); break;
     }
 }

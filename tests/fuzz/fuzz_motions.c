@@ -146,7 +146,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     cfg.threads = 1;
     fuzz_config_path(&cfg, &in, fuzz_chance(&in, 16) ? 40 : 12);
     FUZZ_CHECK(l1l2stab_create(&s, &cfg) == L1L2STAB_OK, "the config is valid");
-    const int repeats = fuzz_chance(&in, 4) ? 1 + fuzz_below(&in, 60) : 1;
+    const int repeats = fuzz_chance(&in, 4) ? 2 + fuzz_below(&in, 30) : 1;
     int frames = 0, pulled = 0;
     while (fuzz_has_more(&in) && frames + repeats <= MAX_FRAMES - 1) {
         const Step step = choose_step(&in, &cfg, frames);

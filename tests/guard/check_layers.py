@@ -38,6 +38,7 @@ QUOTED = {
     'tests/fuzz': ['tests/fuzz', 'plugin/gstreamer', SOURCE],
     'tests/gstreamer': ['tests/gstreamer', 'tests/support'],
     'tests/lib': ['tests/lib', 'tests/support', SOURCE],
+    'tests/soak': [],
     'tests/support': ['tests/support'],
     'lib/include/l1l2stab': [],
     SOURCE: [SOURCE],

@@ -150,13 +150,14 @@ n_rows (const GstVideoFrame * frame, guint plane)
   return GST_VIDEO_FRAME_COMP_HEIGHT (frame, c);
 }
 
-/* Whether the rows of a plane lie within the memory that is mapped for it. A plane that is not in that memory at all was
- * mapped by the function of another memory, which alone knows its size. */
+/* Whether the rows of a plane lie within the memory that is mapped for it. A plane that is not in that memory at all
+ * was mapped by a function of the meta's own, which alone knows its size. */
 static gboolean
 plane_fits (const GstVideoFrame * frame, guint plane)
 {
   const GstMapInfo *map = &frame->map[frame->meta ? plane : 0];
-  const gint64 first = (const guint8 *) GST_VIDEO_FRAME_PLANE_DATA (frame, plane) - map->data;
+  const guint8 *data = GST_VIDEO_FRAME_PLANE_DATA (frame, plane);
+  const gint64 first = data - map->data;
   const gint64 last = first + (gint64) (n_rows (frame, plane) - 1)
       * GST_VIDEO_FRAME_PLANE_STRIDE (frame, plane);
   const gint64 size = map->size;

@@ -189,7 +189,8 @@ gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer,
 
   if (!held) {
     GST_ELEMENT_ERROR (stream->element, STREAM, FORMAT,
-        ("A buffer is too small for a frame of its caps, or for the rows that its video meta describes."), (NULL));
+        ("A buffer is too small for a frame of its caps, or for the rows that "
+            "its video meta describes."), (NULL));
     return GST_FLOW_ERROR;
   }
 
@@ -303,7 +304,8 @@ gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output,
   if (!gst_l1l2_stab_alloc_map (&pixels, &stream->out_info, output,
           GST_MAP_WRITE)) {
     GST_ELEMENT_ERROR (stream->element, RESOURCE, WRITE,
-        ("An output buffer is too small for a frame of its caps, or for the rows that its video meta describes."), (NULL));
+        ("An output buffer is too small for a frame of its caps, or for the "
+            "rows that its video meta describes."), (NULL));
     return GST_FLOW_ERROR;
   }
   gst_l1l2_stab_convert_planes (&frame, &pixels);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The public API as a state machine: any calls in any order, with any config, pictures, strides, timestamps and motions.
- * A model of what the header promises predicts each result. The input is played with one thread and with three, which
- * have to give the same bytes. */
+/* The public API as a state machine: any calls in any order, with any config, pictures, strides, timestamps and
+ * motions. A model of what the header promises predicts each result. The input is played with one thread and with
+ * three, which have to give the same bytes. */
 #include "fuzz_config.h"
 #include "fuzz_info.h"
 #include "fuzz_picture.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The reader of masks (PGM files) and of the text of `region`: any bytes are refused with one error, or give a mask and a
- * region that the library accepts. The first byte of the input chooses which of the two the rest is. */
+/* The reader of masks (PGM files) and of the text of `region`: any bytes are refused with one error, or give a mask and
+ * a region that the library accepts. The first byte of the input chooses which of the two the rest is. */
 #include <gst/video/video.h>
 
 #include "fuzz_gst.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The reader of motion files: any bytes are refused with one error, or give motions within their documented ranges. What
- * was read is written again, and that file has to be readable. The first bytes of the input choose the frames that are
- * asked for, the rest is the file. */
+/* The reader of motion files: any bytes are refused with one error, or give motions within their documented ranges.
+ * What was read is written again, and that file has to be readable. The first bytes of the input choose the frames that
+ * are asked for, the rest is the file. */
 #include <gst/video/video.h>
 
 #include "fuzz_gst.h"

@@ -217,6 +217,11 @@ static void route_cover(Output *output, Route *route, const AVStream *in)
 
 static void route_audio(Output *output, Route *route, const AVStream *in)
 {
+    /* In a file that ends before its sound begins, nothing tells what sound it is. */
+    if (in->codecpar->sample_rate <= 0) {
+        say_note("%s: audio stream %d is left out: the file has no sound for it", output->input->name, in->index);
+        return;
+    }
     route->out = new_stream(output, in);
     if (takes(output, in->codecpar->codec_id)) {
         copy_parameters(output, route->out, in);

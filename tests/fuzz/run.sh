@@ -29,9 +29,13 @@ for target in "${targets[@]}"; do
   corpus=$build/corpus/$target
   log=$build/fuzz_$target.log
   python3 "$top/tests/fuzz/make_corpus.py" "$target" "$corpus"
+  # A thread of GLib that is ending while leaks are looked for seems to leak. fuzz_element.c counts buffers itself, and
+  # the tests of the suite `leaks` find what else the element leaks.
+  leaks=1
+  [[ $target != element ]] || leaks=0
   result=0
   "$build/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout="$longest" -rss_limit_mb=4096 -max_len=400 \
-    -print_final_stats=1 -artifact_prefix="$build/findings/$target-" "$corpus" >"$log" 2>&1 || result=$?
+    -detect_leaks=$leaks -print_final_stats=1 -artifact_prefix="$build/findings/$target-" "$corpus" >"$log" 2>&1 || result=$?
   executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   if [[ $result -eq 0 ]]; then
     finding='no finding'

@@ -35,7 +35,8 @@ for target in "${targets[@]}"; do
   [[ $target != element ]] || leaks=0
   result=0
   "$build/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout="$longest" -rss_limit_mb=4096 -max_len=400 \
-    -detect_leaks=$leaks -print_final_stats=1 -artifact_prefix="$build/findings/$target-" "$corpus" >"$log" 2>&1 || result=$?
+    -detect_leaks=$leaks -print_final_stats=1 -artifact_prefix="$build/findings/$target-" "$corpus" \
+    >"$log" 2>&1 || result=$?
   executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   if [[ $result -eq 0 ]]; then
     finding='no finding'

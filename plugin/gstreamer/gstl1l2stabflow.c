@@ -125,8 +125,8 @@ push_due_events (GstL1L2StabFlow * flow)
   }
 }
 
-/* The base class takes a buffer from the negotiated pool and copies timestamps, flags and metas from `input`. It posts
- * no error if there is none. Events that drain return no result, so without an error the frames would be lost unseen. */
+/* The base class takes a buffer from the negotiated pool and copies timestamps, flags and metas from `input`. If there
+ * is none, it posts no error. Events that drain return no result, so the frames would be lost unseen. */
 static GstFlowReturn
 allocate_output (GstL1L2StabFlow * flow, GstBuffer * input, GstBuffer ** output)
 {

@@ -168,12 +168,25 @@ plane_fits (const GstVideoFrame * frame, guint plane)
       && MAX (first, last) + (gint64) row_size (frame, plane) <= size;
 }
 
+/* GStreamer takes another format or a smaller size than that of the caps for a fault of the program, and may end it. */
+static gboolean
+meta_fits (GstBuffer * buffer, const GstVideoInfo * info)
+{
+  const GstVideoMeta *meta = gst_buffer_get_video_meta (buffer);
+
+  return !meta || (meta->format == GST_VIDEO_INFO_FORMAT (info)
+      && meta->width >= (guint) GST_VIDEO_INFO_WIDTH (info)
+      && meta->height >= (guint) GST_VIDEO_INFO_HEIGHT (info));
+}
+
 gboolean
 gst_l1l2_stab_alloc_map (GstVideoFrame * frame, const GstVideoInfo * info,
     GstBuffer * buffer, GstMapFlags flags)
 {
   guint i;
 
+  if (!meta_fits (buffer, info))
+    return FALSE;
   if (!gst_video_frame_map (frame, info, buffer, flags))
     return FALSE;
   for (i = 0; i < GST_VIDEO_FRAME_N_PLANES (frame); i++) {

@@ -185,6 +185,26 @@ GST_START_TEST (a_meta_that_reaches_beyond_the_memory_is_an_error)
 
 GST_END_TEST;
 
+/* Also where critical messages end the program, as in these tests. */
+GST_START_TEST (a_meta_for_other_frames_than_those_of_the_caps_is_an_error)
+{
+  GstHarness *h = stab_harness_new ("video/x-raw, format=GRAY8, width=64, "
+      "height=48, framerate=25/1", "window", WINDOW, NULL);
+  GstBuffer *buffer = gst_buffer_new_allocate (NULL, 3072, NULL);
+  GstMessage *message;
+
+  gst_buffer_add_video_meta (buffer, GST_VIDEO_FRAME_FLAG_NONE,
+      __i__ == 0 ? GST_VIDEO_FORMAT_I420 : GST_VIDEO_FORMAT_GRAY8,
+      __i__ == 1 ? 63 : 64, __i__ == 2 ? 47 : 48);
+  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_ERROR);
+  message = stab_harness_message (h, GST_MESSAGE_ERROR);
+  fail_unless (message != NULL);
+  gst_message_unref (message);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 /* The last row ends with the last byte; from the bottom up too. */
 GST_START_TEST (a_meta_that_reaches_to_the_last_byte_is_honored)
 {
@@ -217,6 +237,7 @@ layout_suite (void)
   tcase_add_test (tc, planes_can_be_in_different_memories);
   tcase_add_loop_test (tc, a_meta_that_reaches_beyond_the_memory_is_an_error, 0,
       G_N_ELEMENTS (false_metas));
+  tcase_add_loop_test (tc, a_meta_for_other_frames_than_those_of_the_caps_is_an_error, 0, 3);
   tcase_add_loop_test (tc, a_meta_that_reaches_to_the_last_byte_is_honored, 0, 2);
   tcase_add_test (tc, downstreams_padded_buffers_are_filled);
   return s;

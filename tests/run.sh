@@ -4,10 +4,13 @@
 # usage: tests/run.sh [MESON_TEST_OPTION...]               all tests, or some: tests/run.sh --suite lib
 #        tests/run.sh --sanitize [MESON_TEST_OPTION...]    the library's and the element's tests under AddressSanitizer
 #                                                          and UndefinedBehaviorSanitizer, built in build-sanitize
+#        tests/run.sh --threads [MESON_TEST_OPTION...]     the tests with several threads under ThreadSanitizer, built
+#                                                          by clang in build-threads
 #        tests/run.sh --long [MESON_TEST_OPTION...]        only the long tests, which the others leave out: the filter
 #                                                          in an ffmpeg that they build, half an hour at first; Debian
 #                                                          packages, built and installed in a clean root; the Python
-#                                                          wheel with an OpenCV that they build
+#                                                          wheel with an OpenCV that they build; soaks, 1,000 damaged
+#                                                          files
 # The environment variable BUILD_DIR names another build directory. CC and CXX choose the compiler of a new one.
 set -euo pipefail
 
@@ -25,6 +28,14 @@ if [[ ${1:-} == --sanitize ]]; then
   [[ $# -gt 0 ]] || test_options+=(--suite lib --suite plugin)
   export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:strict_string_checks=1:detect_stack_use_after_return=1}
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-halt_on_error=1:print_stacktrace=1}
+elif [[ ${1:-} == --threads ]]; then
+  shift
+  build=$top/build-threads
+  setup=(-Dsamples=false -Db_sanitize=thread -Db_lundef=false -Dbuildtype=debugoptimized)
+  # One at a time: the sanitizer makes each of them slow. A codec's own threads are none of this project's.
+  test_options=(--timeout-multiplier 10 --num-processes 1 --no-suite codecs)
+  export CC=clang CXX=clang++ CK_TIMEOUT_MULTIPLIER=10
+  [[ $# -gt 0 ]] || test_options+=(--suite threads --suite plugin)
 elif [[ ${1:-} == --long ]]; then
   shift
   test_options=(--suite long)

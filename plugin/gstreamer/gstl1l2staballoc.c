@@ -121,6 +121,83 @@ gst_l1l2_stab_alloc_own_pool (const GstVideoInfo * info)
   return pool;
 }
 
+/* The bytes from the first sample of a row to the end of its last one. */
+static gsize
+row_size (const GstVideoFrame * frame, guint plane)
+{
+  gsize size = 0;
+  guint c;
+
+  for (c = 0; c < GST_VIDEO_FRAME_N_COMPONENTS (frame); c++) {
+    const gint bytes = GST_VIDEO_FRAME_COMP_DEPTH (frame, c) > 8 ? 2 : 1;
+    /* GStreamer 1.22 puts the second chroma component of P010 at byte 1 instead of 2. */
+    const gint offset = (GST_VIDEO_FRAME_COMP_POFFSET (frame, c) + bytes - 1) / bytes * bytes;
+
+    if (GST_VIDEO_FRAME_COMP_PLANE (frame, c) == plane)
+      size = MAX (size, (gsize) (GST_VIDEO_FRAME_COMP_WIDTH (frame, c) - 1)
+          * GST_VIDEO_FRAME_COMP_PSTRIDE (frame, c) + offset + bytes);
+  }
+  return size;
+}
+
+static gint
+n_rows (const GstVideoFrame * frame, guint plane)
+{
+  guint c = 0;
+
+  while (GST_VIDEO_FRAME_COMP_PLANE (frame, c) != plane)
+    c++;
+  return GST_VIDEO_FRAME_COMP_HEIGHT (frame, c);
+}
+
+/* Whether the rows of a plane lie within the memory that is mapped for it. A plane that is not in that memory at all
+ * was mapped by a function of the meta's own, which alone knows its size. */
+static gboolean
+plane_fits (const GstVideoFrame * frame, guint plane)
+{
+  const GstMapInfo *map = &frame->map[frame->meta ? plane : 0];
+  const guint8 *data = GST_VIDEO_FRAME_PLANE_DATA (frame, plane);
+  const gint64 first = data - map->data;
+  const gint64 last = first + (gint64) (n_rows (frame, plane) - 1)
+      * GST_VIDEO_FRAME_PLANE_STRIDE (frame, plane);
+  const gint64 size = map->size;
+
+  if (first < 0 || first >= size)
+    return TRUE;
+  return MIN (first, last) >= 0
+      && MAX (first, last) + (gint64) row_size (frame, plane) <= size;
+}
+
+/* GStreamer takes another format or a smaller size than that of the caps for a fault of the program, and may end it. */
+static gboolean
+meta_fits (GstBuffer * buffer, const GstVideoInfo * info)
+{
+  const GstVideoMeta *meta = gst_buffer_get_video_meta (buffer);
+
+  return !meta || (meta->format == GST_VIDEO_INFO_FORMAT (info)
+      && meta->width >= (guint) GST_VIDEO_INFO_WIDTH (info)
+      && meta->height >= (guint) GST_VIDEO_INFO_HEIGHT (info));
+}
+
+gboolean
+gst_l1l2_stab_alloc_map (GstVideoFrame * frame, const GstVideoInfo * info,
+    GstBuffer * buffer, GstMapFlags flags)
+{
+  guint i;
+
+  if (!meta_fits (buffer, info))
+    return FALSE;
+  if (!gst_video_frame_map (frame, info, buffer, flags))
+    return FALSE;
+  for (i = 0; i < GST_VIDEO_FRAME_N_PLANES (frame); i++) {
+    if (!plane_fits (frame, i)) {
+      gst_video_frame_unmap (frame);
+      return FALSE;
+    }
+  }
+  return TRUE;
+}
+
 GstBuffer *
 gst_l1l2_stab_alloc_copy (GstBufferPool * own_pool, GstBuffer * buffer,
     const GstVideoInfo * info)
@@ -131,7 +208,7 @@ gst_l1l2_stab_alloc_copy (GstBufferPool * own_pool, GstBuffer * buffer,
 
   if (gst_buffer_pool_acquire_buffer (own_pool, &copy, NULL) != GST_FLOW_OK)
     return NULL;
-  if (gst_video_frame_map (&from, info, buffer, GST_MAP_READ)) {
+  if (gst_l1l2_stab_alloc_map (&from, info, buffer, GST_MAP_READ)) {
     if (gst_video_frame_map (&to, info, copy, GST_MAP_WRITE)) {
       copied = gst_video_frame_copy (&to, &from);
       gst_video_frame_unmap (&to);

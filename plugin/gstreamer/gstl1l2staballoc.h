@@ -22,6 +22,11 @@ gboolean gst_l1l2_stab_alloc_is_scarce (GstBuffer * buffer, guint window);
 /* A new, active pool for copies; NULL if that fails. */
 GstBufferPool *gst_l1l2_stab_alloc_own_pool (const GstVideoInfo * info);
 
+/* Like gst_video_frame_map(), but fails if a plane reaches beyond its memory: GStreamer 1.22 believes the offsets and
+ * strides of a video meta, and maps only the first memory of a plane that lies in two. */
+gboolean gst_l1l2_stab_alloc_map (GstVideoFrame * frame,
+    const GstVideoInfo * info, GstBuffer * buffer, GstMapFlags flags);
+
 /* A copy of the pixels, without metadata, from `own_pool`; NULL if that fails. */
 GstBuffer *gst_l1l2_stab_alloc_copy (GstBufferPool * own_pool,
     GstBuffer * buffer, const GstVideoInfo * info);

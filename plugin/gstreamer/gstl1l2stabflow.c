@@ -127,13 +127,20 @@ push_due_events (GstL1L2StabFlow * flow)
   }
 }
 
-/* The base class takes a buffer from the negotiated pool and copies timestamps, flags and metas from `input`. */
+/* The base class takes a buffer from the negotiated pool and copies timestamps, flags and metas from `input`. If there
+ * is none, it posts no error. Events that drain return no result, so the frames would be lost unseen. */
 static GstFlowReturn
 allocate_output (GstL1L2StabFlow * flow, GstBuffer * input, GstBuffer ** output)
 {
   GstBaseTransformClass *base = g_type_class_peek (GST_TYPE_BASE_TRANSFORM);
+  const GstFlowReturn ret =
+      base->prepare_output_buffer (flow->trans, input, output);
 
-  return base->prepare_output_buffer (flow->trans, input, output);
+  if (ret == GST_FLOW_ERROR)
+    GST_ELEMENT_ERROR (flow->trans, RESOURCE, NO_SPACE_LEFT,
+        ("There is no memory for an output frame."),
+        ("the negotiated buffer pool gave no buffer"));
+  return ret;
 }
 
 static void

@@ -2,12 +2,25 @@
 /* The two motion files of the element together: which of them is open, and what a frame gets from them. */
 #include "gstl1l2stabmotionfiles.h"
 
+#include <glib/gstdio.h>
+
+/* Also by two names of one file, such as a link. */
+static gboolean
+is_same_file (const gchar * one, const gchar * other)
+{
+  GStatBuf a, b;
+
+  return g_strcmp0 (one, other) == 0
+      || (g_stat (one, &a) == 0 && g_stat (other, &b) == 0
+      && a.st_dev == b.st_dev && a.st_ino == b.st_ino);
+}
+
 gboolean
 gst_l1l2_stab_motion_files_open (GstL1L2StabMotionFiles * files,
     GstElement * element, const gchar * in, const gchar * out)
 {
   gst_l1l2_stab_motion_files_close (files);
-  if (in && g_strcmp0 (in, out) == 0) {
+  if (in && out && is_same_file (in, out)) {
     GST_ELEMENT_ERROR (element, RESOURCE, OPEN_WRITE,
         ("motion-in and motion-out are both %s, but must be two files.", in), (NULL));
     return FALSE;

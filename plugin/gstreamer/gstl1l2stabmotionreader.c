@@ -2,8 +2,10 @@
 /* Reads a motion file: parses and checks its lines when the element starts, then finds the motion of each frame. */
 #include "gstl1l2stabmotionfiles.h"
 
+#include <glib/gstdio.h>
 #include <math.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 #include "gstl1l2stabconvert.h"
 #include "gstl1l2stabmatrix.h"
@@ -15,6 +17,13 @@
 /* The largest distance between the time of a frame and that of its line, if the file has no frame rate. */
 #define ASSUMED_TOLERANCE (10 * GST_MSECOND)
 
+/* A day of video has some 300 MB. */
+#define MAX_FILE_SIZE (1024 * 1024 * 1024)
+
+/* The motions that the library accepts: see L1L2StabFrame. */
+#define MAX_STEP 10.0           /* diagonals */
+#define MAX_STRETCH 2.0
+
 struct _GstL1L2StabMotionReader
 {
   GstElement *element;          /* not owned */
@@ -23,6 +32,7 @@ struct _GstL1L2StabMotionReader
   gint fps_n, fps_d;            /* 0/x: the file has no frame rate */
   GArray *lines;                /* of GstL1L2StabMotion, in the order of their times */
   gboolean is_timed;
+  gdouble diagonal;             /* of the frames that are read now, pixels */
 
   /* The frame that was asked for last. */
   gint last;                    /* its line; -1: there was none */
@@ -212,12 +222,34 @@ parse (GstL1L2StabMotionReader * reader, gchar * text)
   return !fault || fail (reader, i + 1, fault);
 }
 
+/* Opening a pipe that nobody writes to would wait for ever, and a device may have no end. */
+static gboolean
+is_readable (GstElement * element, const gchar * name)
+{
+  const gchar *fault = NULL;
+  GStatBuf status;
+
+  if (g_stat (name, &status) != 0)
+    return TRUE;                /* opening it will say why */
+  if (!S_ISREG (status.st_mode))
+    fault = "is not a regular file";
+  else if (status.st_size > MAX_FILE_SIZE)
+    fault = "is larger than 1 GB, and so no motion file";
+  if (fault)
+    GST_ELEMENT_ERROR (element, RESOURCE, READ, ("motion-in: %s %s.", name,
+            fault), (NULL));
+  return !fault;
+}
+
 GstL1L2StabMotionReader *
 gst_l1l2_stab_motion_reader_open (GstElement * element, const gchar * name)
 {
   GstL1L2StabMotionReader *reader;
   GError *error = NULL;
   gchar *text;
+
+  if (!is_readable (element, name))
+    return NULL;
 
   if (!g_file_get_contents (name, &text, NULL, &error)) {
     GST_ELEMENT_ERROR (element, RESOURCE, OPEN_READ,
@@ -254,6 +286,7 @@ gst_l1l2_stab_motion_reader_check (GstL1L2StabMotionReader * reader,
   const gint fps_n = GST_VIDEO_INFO_FPS_N (info);
   const gint fps_d = GST_VIDEO_INFO_FPS_D (info);
 
+  reader->diagonal = hypot (width, height);
   if (reader->width && (reader->width != width || reader->height != height)) {
     GST_ELEMENT_ERROR (reader->element, RESOURCE, READ,
         ("motion-in: %s is for frames of %dx%d pixels, but these have %dx%d.",
@@ -356,28 +389,54 @@ append_motion (gdouble F[9], const gdouble G[9])
   }
 }
 
-/* The motion from the frame of line `to` to that of line `from`: the product of the motions between them. A path starts
- * if one starts between them. */
+/* Whether the library accepts the motion: many frames that are skipped may have moved too far. */
+static gboolean
+is_accepted (const GstL1L2StabMotionReader * reader, const gdouble F[9])
+{
+  const gdouble p = hypot (F[0] + F[4], F[3] - F[1]);
+  const gdouble q = hypot (F[0] - F[4], F[3] + F[1]);
+
+  return hypot (F[2], F[5]) <= MAX_STEP * reader->diagonal
+      && (p + q) / 2 <= MAX_STRETCH && (p - q) / 2 >= 1 / MAX_STRETCH;
+}
+
+/* The motion over the lines between these two, of which `to` may be the earlier one. A path starts if one starts
+ * between them, or if the frames have nothing in common any more. */
 static void
-compose (const GstL1L2StabMotionReader * reader, gint from, gint to,
+compose_skipped (const GstL1L2StabMotionReader * reader, gint from, gint to,
     GstL1L2StabMotion * motion)
 {
+  static const gdouble identity[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
   gdouble F[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
   const gint first = MIN (from, to) + 1, last = MAX (from, to);
   gint i;
 
-  *motion = *get_line (reader, to);
-  if (from < 0 || to == from + 1)
-    return;
   motion->starts_path = FALSE;
-  for (i = first; i <= last; i++) {
+  for (i = first; i <= last && !motion->starts_path; i++) {
     append_motion (F, get_line (reader, i)->F);
-    motion->starts_path |= get_line (reader, i)->starts_path;
+    motion->starts_path = get_line (reader, i)->starts_path
+        || !is_accepted (reader, F);
   }
-  if (to < from)
+  if (motion->starts_path)
+    memcpy (motion->F, identity, sizeof (identity));
+  else if (to < from)
     gst_l1l2_stab_matrix_invert (F, motion->F);
   else
     memcpy (motion->F, F, sizeof (F));
+  if (!is_accepted (reader, motion->F)) {       /* the inverse of a zoom may move farther than the zoom */
+    motion->starts_path = TRUE;
+    memcpy (motion->F, identity, sizeof (identity));
+  }
+}
+
+/* The motion from the frame of line `to` to that of line `from`. */
+static void
+compose (const GstL1L2StabMotionReader * reader, gint from, gint to,
+    GstL1L2StabMotion * motion)
+{
+  *motion = *get_line (reader, to);
+  if (from >= 0 && to != from + 1)
+    compose_skipped (reader, from, to, motion);
 }
 
 gboolean

@@ -158,7 +158,7 @@ held_frame_new (GstL1L2StabStream * stream, GstBuffer * buffer)
     pixels = gst_buffer_ref (buffer);
 
   if (pixels) {
-    mapped = gst_video_frame_map (&held->pixels, &stream->in_info, pixels,
+    mapped = gst_l1l2_stab_alloc_map (&held->pixels, &stream->in_info, pixels,
         GST_MAP_READ);
     gst_buffer_unref (pixels);
   }
@@ -190,7 +190,8 @@ gst_l1l2_stab_stream_push (GstL1L2StabStream * stream, GstBuffer * buffer,
 
   if (!held) {
     GST_ELEMENT_ERROR (stream->element, STREAM, FORMAT,
-        ("A buffer is too small for a frame of its caps."), (NULL));
+        ("A buffer is too small for a frame of its caps, or for the rows that "
+            "its video meta describes."), (NULL));
     return GST_FLOW_ERROR;
   }
 
@@ -301,9 +302,11 @@ gst_l1l2_stab_stream_render (GstL1L2StabStream * stream, GstBuffer * output,
   L1L2StabResult result;
   GstVideoFrame pixels;
 
-  if (!gst_video_frame_map (&pixels, &stream->out_info, output, GST_MAP_WRITE)) {
+  if (!gst_l1l2_stab_alloc_map (&pixels, &stream->out_info, output,
+          GST_MAP_WRITE)) {
     GST_ELEMENT_ERROR (stream->element, RESOURCE, WRITE,
-        ("An output buffer is too small for a frame of its caps."), (NULL));
+        ("An output buffer is too small for a frame of its caps, or for the "
+            "rows that its video meta describes."), (NULL));
     return GST_FLOW_ERROR;
   }
   gst_l1l2_stab_convert_planes (&frame, &pixels);

@@ -258,6 +258,10 @@ static int finish(Job *job)
         code = EXIT_DAMAGED;
         say_note("%s: is truncated or damaged (%s): the output has what could be read", job->input->name,
                  job->input->damage);
+    } else if (job->output && output_left_out(job->output) > 0) {
+        code = EXIT_DAMAGED;
+        say_note("%s: is damaged: %d packets of sound or subtitles are left out", job->input->name,
+                 output_left_out(job->output));
     }
     if (job->error)
         say_error(job->error->message);

@@ -49,6 +49,7 @@ struct Output {
     gboolean started, copied_all;
     gint64 bytes;             /* of the complete file */
     int write_errno;
+    int left_out;             /* packets that were copied and that the container refused */
     GError *fault;
 };
 
@@ -217,6 +218,11 @@ static void route_cover(Output *output, Route *route, const AVStream *in)
 
 static void route_audio(Output *output, Route *route, const AVStream *in)
 {
+    /* In a file that ends before its sound begins, nothing tells what sound it is. */
+    if (in->codecpar->sample_rate <= 0) {
+        say_note("%s: audio stream %d is left out: the file has no sound for it", output->input->name, in->index);
+        return;
+    }
     route->out = new_stream(output, in);
     if (takes(output, in->codecpar->codec_id)) {
         copy_parameters(output, route->out, in);
@@ -429,6 +435,12 @@ static void correct_times(Output *output, AVPacket *packet, const AVStream *out)
     *last = packet->dts;
 }
 
+/* A damaged packet that is only copied does not end the output: it is left out. */
+static gboolean can_leave_out(const Output *output, const AVStream *out, int code)
+{
+    return out != output->video && !output->write_errno && (code == AVERROR_INVALIDDATA || code == AVERROR(EINVAL));
+}
+
 static void write_packet(Output *output, AVPacket *packet, AVRational time_base)
 {
     const AVStream *out = output->format->streams[packet->stream_index];
@@ -436,7 +448,9 @@ static void write_packet(Output *output, AVPacket *packet, AVRational time_base)
     packet->pos = -1;
     correct_times(output, packet, out);
     const int code = output->fault ? 0 : av_write_frame(output->format, packet);
-    if (code < 0)
+    if (code < 0 && can_leave_out(output, out, code))
+        output->left_out++;
+    else if (code < 0)
         fail(output, code);
 }
 
@@ -636,6 +650,14 @@ gboolean output_finish(Output *output, gboolean partial, char **written, GError 
     else
         g_free(name);
     return ok;
+}
+
+int output_left_out(Output *output)
+{
+    g_mutex_lock(&output->lock);
+    const int left_out = output->left_out;
+    g_mutex_unlock(&output->lock);
+    return left_out;
 }
 
 gint64 output_bytes(Output *output)

@@ -37,6 +37,9 @@ gboolean output_picture(Output *output, GstBuffer *buffer, const GstCaps *encode
 /* Completes the file and gives it its name; partial: the name for an interrupted one. *written is the name. */
 gboolean output_finish(Output *output, gboolean partial, char **written, GError **error);
 
+/* The number of packets of other streams that are so damaged that the container refused them. */
+int output_left_out(Output *output);
+
 gint64 output_bytes(Output *output);
 
 /* Sets *error to what went wrong so far. FALSE: nothing did. */

@@ -92,6 +92,16 @@ class Inputs(Case):
         self.assertIn('truncated or damaged', run.stderr)
         self.assertGreater(len(probe.File(self.out / 'a.mkv').frames), 10)
 
+    def test_a_file_that_ends_before_its_sound_begins_keeps_the_picture(self):
+        kinds.ffmpeg(*kinds.video(), '-itsoffset', '1.2', *kinds.tone(), *kinds.H264, *kinds.AAC,
+                     self.path / 'whole.ts')
+        whole = (self.path / 'whole.ts').read_bytes()
+        (self.path / 'cut.ts').write_bytes(whole[:len(whole) // 2])
+        run = self.run_command('cut.ts', '-o', 'out/a.ts')
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn('audio stream 1 is left out', run.stderr)
+        self.assertGreater(len(probe.File(self.out / 'a.ts').frames), 10)
+
     def test_an_encrypted_file_is_named(self):
         kinds.ffmpeg('-i', self.clip, '-c', 'copy', '-encryption_scheme', 'cenc-aes-ctr', '-encryption_key', '0' * 32,
                      '-encryption_kid', '1' * 32, self.path / 'secret.mp4')

@@ -149,6 +149,82 @@ GST_START_TEST (downstreams_padded_buffers_are_filled)
 
 GST_END_TEST;
 
+/* Video metas whose last row lies outside the buffer of 3072 bytes, or outside the memory that the plane begins in. */
+static const struct
+{
+  gsize offset;
+  gint stride, first_memory;
+} false_metas[] = {
+  {0, 66, 3072}, {1, 64, 3072}, {3000, 64, 3072}, {0, 1 << 30, 3072}, {0, -64, 3072}, {47 * 64 - 1, -64, 3072},
+  {0, 64, 1000},
+};
+
+GST_START_TEST (a_meta_that_reaches_beyond_the_memory_is_an_error)
+{
+  GstHarness *h = stab_harness_new ("video/x-raw, format=GRAY8, width=64, "
+      "height=48, framerate=25/1", "window", WINDOW, NULL);
+  GstBuffer *buffer = gst_buffer_new ();
+  gsize offset[GST_VIDEO_MAX_PLANES] = { false_metas[__i__].offset };
+  gint stride[GST_VIDEO_MAX_PLANES] = { false_metas[__i__].stride };
+  const gsize first_size = false_metas[__i__].first_memory;
+  GstMessage *message;
+
+  gst_buffer_append_memory (buffer, gst_allocator_alloc (NULL, first_size, NULL));
+  if (first_size < 3072)
+    gst_buffer_append_memory (buffer,
+        gst_allocator_alloc (NULL, 3072 - first_size, NULL));
+  gst_buffer_memset (buffer, 0, 0, 3072);
+  gst_buffer_add_video_meta_full (buffer, GST_VIDEO_FRAME_FLAG_NONE,
+      GST_VIDEO_FORMAT_GRAY8, 64, 48, 1, offset, stride);
+  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_ERROR);
+  message = stab_harness_message (h, GST_MESSAGE_ERROR);
+  fail_unless (message != NULL);
+  gst_message_unref (message);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+/* Also where critical messages end the program, as in these tests. */
+GST_START_TEST (a_meta_for_other_frames_than_those_of_the_caps_is_an_error)
+{
+  GstHarness *h = stab_harness_new ("video/x-raw, format=GRAY8, width=64, "
+      "height=48, framerate=25/1", "window", WINDOW, NULL);
+  GstBuffer *buffer = gst_buffer_new_allocate (NULL, 3072, NULL);
+  GstMessage *message;
+
+  gst_buffer_add_video_meta (buffer, GST_VIDEO_FRAME_FLAG_NONE,
+      __i__ == 0 ? GST_VIDEO_FORMAT_I420 : GST_VIDEO_FORMAT_GRAY8,
+      __i__ == 1 ? 63 : 64, __i__ == 2 ? 47 : 48);
+  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_ERROR);
+  message = stab_harness_message (h, GST_MESSAGE_ERROR);
+  fail_unless (message != NULL);
+  gst_message_unref (message);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+/* The last row ends with the last byte; from the bottom up too. */
+GST_START_TEST (a_meta_that_reaches_to_the_last_byte_is_honored)
+{
+  GstHarness *h = stab_harness_new ("video/x-raw, format=GRAY8, width=63, "
+      "height=48, framerate=25/1", "window", WINDOW, NULL);
+  const gboolean bottom_up = __i__ == 1;
+  const gsize size = 47 * 80 + 63;
+  GstBuffer *buffer = gst_buffer_new_allocate (NULL, size, NULL);
+  gsize offset[GST_VIDEO_MAX_PLANES] = { bottom_up ? 47 * 80 : 0 };
+  gint stride[GST_VIDEO_MAX_PLANES] = { bottom_up ? -80 : 80 };
+
+  gst_buffer_memset (buffer, 0, 0, size);
+  gst_buffer_add_video_meta_full (buffer, GST_VIDEO_FRAME_FLAG_NONE,
+      GST_VIDEO_FORMAT_GRAY8, 63, 48, 1, offset, stride);
+  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_OK);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 static Suite *
 layout_suite (void)
 {
@@ -159,6 +235,10 @@ layout_suite (void)
   tcase_add_loop_test (tc, padded_rows_and_moved_planes_are_honored, 0,
       G_N_ELEMENTS (padded_caps));
   tcase_add_test (tc, planes_can_be_in_different_memories);
+  tcase_add_loop_test (tc, a_meta_that_reaches_beyond_the_memory_is_an_error, 0,
+      G_N_ELEMENTS (false_metas));
+  tcase_add_loop_test (tc, a_meta_for_other_frames_than_those_of_the_caps_is_an_error, 0, 3);
+  tcase_add_loop_test (tc, a_meta_that_reaches_to_the_last_byte_is_honored, 0, 2);
   tcase_add_test (tc, downstreams_padded_buffers_are_filled);
   return s;
 }

@@ -254,6 +254,68 @@ GST_START_TEST (an_allocation_query_disturbs_no_frame)
 
 GST_END_TEST;
 
+/* --- a downstream whose allocator has no memory any more --- */
+
+typedef GstAllocator StabPoorAllocator;
+typedef GstAllocatorClass StabPoorAllocatorClass;
+static GType stab_poor_allocator_get_type (void);
+G_DEFINE_TYPE (StabPoorAllocator, stab_poor_allocator, GST_TYPE_ALLOCATOR);
+
+static gboolean has_memory;
+
+static GstMemory *
+allocate (GstAllocator * allocator, gsize size, GstAllocationParams * params)
+{
+  return has_memory ? gst_allocator_alloc (NULL, size, params) : NULL;
+}
+
+static void
+stab_poor_allocator_class_init (StabPoorAllocatorClass * klass)
+{
+  klass->alloc = allocate;
+}
+
+static void
+stab_poor_allocator_init (StabPoorAllocator * allocator)
+{
+  allocator->mem_type = "poor";
+}
+
+/* Neither events nor queries can return the error of the frames that they drain. */
+GST_START_TEST (frames_that_are_lost_for_lack_of_memory_are_an_error)
+{
+  GstHarness *h = stab_harness_new (NULL, "window", WINDOW, NULL);
+  GstAllocator *allocator = g_object_new (stab_poor_allocator_get_type (), NULL);
+  GstQuery *query = gst_query_new_drain ();
+  GstMessage *message;
+  GstSegment segment;
+
+  gst_object_ref_sink (allocator);
+  has_memory = TRUE;
+  gst_harness_set_propose_allocator (h, allocator, NULL);
+  gst_harness_set_src_caps_str (h, SMALL_CAPS);
+  stab_push_frames (h, 0, WINDOW + 2);
+  fail_unless (stab_harness_message (h, GST_MESSAGE_ERROR) == NULL);
+
+  has_memory = FALSE;
+  gst_segment_init (&segment, GST_FORMAT_TIME);
+  segment.start = GST_SECOND;
+  if (__i__ == 0) {
+    gst_harness_push_event (h, gst_event_new_eos ());
+  } else if (__i__ == 1) {
+    gst_harness_push_event (h, gst_event_new_segment (&segment));
+  } else {
+    gst_pad_peer_query (h->srcpad, query);
+  }
+  message = stab_harness_message (h, GST_MESSAGE_ERROR);
+  fail_unless (message != NULL);
+  gst_message_unref (message);
+  gst_query_unref (query);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 static Suite *
 memory_suite (void)
 {
@@ -270,6 +332,7 @@ memory_suite (void)
   tcase_add_test (tc, memory_that_is_lent_is_released_at_once);
   tcase_add_test (tc, the_offered_pool_holds_a_window_of_frames);
   tcase_add_test (tc, an_allocation_query_disturbs_no_frame);
+  tcase_add_loop_test (tc, frames_that_are_lost_for_lack_of_memory_are_an_error, 0, 3);
   return s;
 }
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Motion files of other tools: how frames find their lines, and which faults of a file are reported. */
 #include <math.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "motion_fixture.h"
 
@@ -74,6 +76,46 @@ GST_START_TEST (skipped_frames_and_reverse_playback_find_their_motion)
   fail_unless (next_motion (h, &x, &y) && x == -12 && y == .5);
   fail_unless (next_motion (h, &x, &y) && x == -(9 + 10 + 11));
   fail_unless (next_motion (h, &x, &y) && x == -(6 + 7 + 8));
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+/* Thirty lines that pan by half a diagonal each, or zoom: the library accepts each, but not what they make together. */
+GST_START_TEST (skipping_farther_than_the_library_follows_starts_a_path)
+{
+  static const gchar *motions[] = {
+    "1 0 100 0 1 0", "1.2 0 0 0 1.2 0", "0.8 0 0 0 0.8 0", "1.02 0 100 0 1.02 0"
+  };
+  const gboolean backward = __i__ % 2;
+  GstHarness *h = harness_new ("in", NULL);
+  GString *text = g_string_new ("l1l2stab-motion 1\n");
+  GstSegment segment;
+  gdouble x, y;
+  guint i;
+
+  for (i = 0; i < N_FRAMES; i++)
+    g_string_append_printf (text, "%" G_GUINT64_FORMAT " 0 given 1 0 0 %s\n",
+        i * FRAME_DURATION, motions[__i__ / 2]);
+  write_file ("in", text->str);
+  g_string_free (text, TRUE);
+  play (h);
+  if (backward) {
+    gst_segment_init (&segment, GST_FORMAT_TIME);
+    segment.rate = -1;
+    segment.stop = 2 * GST_SECOND;
+    gst_harness_push_event (h, gst_event_new_segment (&segment));
+  }
+  push_frame (h, backward ? 28 : 1);
+  push_frame (h, backward ? 27 : 2);
+  push_frame (h, backward ? 1 : 28);
+  push_frame (h, backward ? 0 : 29);
+  gst_harness_push_event (h, gst_event_new_eos ());
+  fail_if (next_motion (h, &x, &y));
+  fail_unless (next_motion (h, &x, &y));
+  fail_if (next_motion (h, &x, &y));
+  fail_unless (next_motion (h, &x, &y));
+  fail_unless (stab_harness_message (h, GST_MESSAGE_ERROR) == NULL);
   stab_harness_free (h);
 }
 
@@ -285,6 +327,47 @@ GST_START_TEST (files_that_cannot_be_opened_are_an_error_at_the_start)
 
 GST_END_TEST;
 
+/* Opening the pipe would wait for ever. */
+GST_START_TEST (a_pipe_or_a_device_is_no_motion_file)
+{
+  GstHarness *h = harness_new (__i__ == 0 ? "in" : NULL, NULL);
+  gchar *path = g_build_filename (folder, "in", NULL);
+
+  if (__i__ == 0) {
+    fail_unless_equals_int (mkfifo (path, 0600), 0);
+  } else {
+    g_object_set (h->element, "motion-in", "/dev/null", NULL);
+  }
+  fail_unless_equals_int (gst_element_set_state (h->element,
+          GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+  assert_error_says (h, GST_RESOURCE_ERROR_READ, "is not a regular file");
+  g_free (path);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
+/* Writing would destroy what is read. */
+GST_START_TEST (two_names_of_one_file_are_one_file)
+{
+  GstHarness *h = harness_new ("in", "a");
+  gchar *path = g_build_filename (folder, "a", NULL);
+  gchar *kept;
+
+  write_file ("in", "l1l2stab-motion 1\n0 0 given 1 0 0 1 0 0 0 1 0\n");
+  fail_unless_equals_int (symlink ("in", path), 0);
+  fail_unless_equals_int (gst_element_set_state (h->element,
+          GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+  assert_error_says (h, GST_RESOURCE_ERROR_OPEN_WRITE, "are both");
+  kept = contents ("in");
+  fail_unless (g_str_has_prefix (kept, "l1l2stab-motion 1\n0 0 given"));
+  g_free (kept);
+  g_free (path);
+  stab_harness_free (h);
+}
+
+GST_END_TEST;
+
 /* Also by default, because rolling-shutter is on by default. */
 GST_START_TEST (a_rolling_shutter_that_is_not_corrected_is_one_warning)
 {
@@ -357,6 +440,9 @@ motionin_suite (void)
   tcase_add_loop_test (tc, a_faulty_file_stops_the_start_and_the_error_says_where, 0,
       G_N_ELEMENTS (faulty));
   tcase_add_test (tc, files_that_cannot_be_opened_are_an_error_at_the_start);
+  tcase_add_loop_test (tc, skipping_farther_than_the_library_follows_starts_a_path, 0, 8);
+  tcase_add_loop_test (tc, a_pipe_or_a_device_is_no_motion_file, 0, 2);
+  tcase_add_test (tc, two_names_of_one_file_are_one_file);
   tcase_add_test (tc, a_rolling_shutter_that_is_not_corrected_is_one_warning);
   tcase_add_test (tc, frames_of_another_size_or_rate_or_time_are_refused);
   return s;

@@ -726,7 +726,7 @@ static void compare_cells(const Cell *winner, const Cell *identity, const Cell *
                           double pixel, L1L2AlignmentEvidence *e)
 {
     const double clearly = 0.9;
-    double length[CELLS];
+    double length[CELLS] = {0};
     int with_detail = 0, support = 0, opposition = 0;
     for (int i = 0; i < CELLS; i++) {
         if (!shift[i].valid)

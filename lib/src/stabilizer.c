@@ -408,6 +408,13 @@ L1L2StabResult l1l2stab_hurry(L1L2Stab *s, int frames)
     return L1L2STAB_OK;
 }
 
+/* At the end of the stream, frames that were kept for borders are not needed any more. */
+static void release_at_end(L1L2Stab *s)
+{
+    if (s->finished && l1l2_frame_queue_count(&s->queue) == 0)
+        l1l2_frame_queue_release_kept(&s->queue);
+}
+
 L1L2StabResult l1l2stab_finish(L1L2Stab *s)
 {
     if (!s)
@@ -419,6 +426,7 @@ L1L2StabResult l1l2stab_finish(L1L2Stab *s)
         add_solve_time(s, start_ns);
     }
     s->finished = true;
+    release_at_end(s);
     return L1L2STAB_OK;
 }
 
@@ -563,8 +571,7 @@ L1L2StabResult l1l2stab_pull(L1L2Stab *s, L1L2StabFrame *out, L1L2StabInfo *info
     }
     s->hurried -= s->hurried > 0;
     l1l2_frame_queue_drop_oldest(&s->queue);
-    if (s->finished && l1l2_frame_queue_count(&s->queue) == 0)
-        l1l2_frame_queue_release_kept(&s->queue);
+    release_at_end(s);
     return L1L2STAB_OK;
 }
 

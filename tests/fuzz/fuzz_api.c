@@ -147,8 +147,12 @@ static void peek(Play *play)
 
 static void check_pulled(Play *play, const L1L2StabInfo *info)
 {
-    Held *held = &play->frames[play->begin];
-    FUZZ_CHECK(held->released == 1, "frame %d was released %d times", play->begin, held->released);
+    const Held *held = &play->frames[play->begin];
+    const int kept = play->cfg.border == L1L2STAB_BORDER_FILL ? play->cfg.fill_frames : 0;
+    const bool ended = play->finished && play->begin + 1 == play->end;
+    for (int k = play->start; k <= play->begin; k++)
+        FUZZ_CHECK(play->frames[k].released == (k <= play->begin - kept || ended), "frame %d was released %d times", k,
+                   play->frames[k].released);
     fuzz_check_info(info, &play->cfg);
     FUZZ_CHECK(info->index == (uint64_t)(play->begin - play->start), "index %llu", (unsigned long long)info->index);
     FUZZ_CHECK(info->lambda == held->lambda, "%g, not %g", info->lambda, held->lambda);
@@ -159,6 +163,7 @@ static void check_pulled(Play *play, const L1L2StabInfo *info)
     play->hash = fuzz_hash(play->hash, stable.warp, sizeof stable.warp);
     hash_result(play, stable.flags);
     hash_result(play, stable.tracks);
+    play->hash = fuzz_hash(play->hash, &stable.filled, sizeof stable.filled);
 }
 
 static L1L2StabResult pull(Play *play, bool with_picture)
@@ -226,9 +231,9 @@ static void set_live(Play *play)
 /* All that are held were released once, and none twice. */
 static void forget_held(Play *play)
 {
-    for (; play->begin < play->end; play->begin++)
-        FUZZ_CHECK(play->frames[play->begin].released == 1, "frame %d: %d releases", play->begin,
-                   play->frames[play->begin].released);
+    for (int k = play->start; k < play->end; k++)
+        FUZZ_CHECK(play->frames[k].released == 1, "frame %d: %d releases", k, play->frames[k].released);
+    play->begin = play->end;
     play->start = play->end;
     play->hurried = 0;
     play->finished = false;

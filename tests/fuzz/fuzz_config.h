@@ -42,6 +42,9 @@ static inline void fuzz_config_picture(L1L2StabConfig *cfg, FuzzInput *in)
     cfg->chroma_site = (L1L2StabChromaSite)fuzz_below(in, 3);
     cfg->interpolation = (L1L2StabInterpolation)fuzz_below(in, 3);
     cfg->output_size = (L1L2StabOutputSize)fuzz_below(in, 2);
+    if (cfg->output_size == L1L2STAB_OUTPUT_SIZE_INPUT)
+        cfg->border = (L1L2StabBorder)fuzz_below(in, 3);
+    cfg->fill_frames = fuzz_between(in, 0, 12);
     cfg->rolling_shutter = (L1L2StabRollingShutter)fuzz_below(in, 3);
     cfg->analysis_size = fuzz_between(in, 128, 160);
     cfg->seed = fuzz_bits(in, 2);
@@ -73,13 +76,13 @@ static inline void fuzz_config_mask(L1L2StabConfig *cfg, FuzzInput *in, uint8_t 
 /* Sets one field to a value that is probably not allowed. */
 static inline void fuzz_config_spoil(L1L2StabConfig *cfg, FuzzInput *in)
 {
-    int *const ints[] = {&cfg->width, &cfg->height, &cfg->window, &cfg->overlap, &cfg->analysis_size, &cfg->threads,
-                         &cfg->mask_width, &cfg->mask_height};
+    int *const ints[] = {&cfg->width, &cfg->height, &cfg->window, &cfg->fill_frames, &cfg->analysis_size,
+                         &cfg->threads, &cfg->mask_width, &cfg->mask_height};
     double *const doubles[] = {&cfg->frame_rate, &cfg->lambda, &cfg->crop_ratio, &cfg->weights[1], &cfg->pixel_aspect,
                                &cfg->region[0], &cfg->region[2]};
     void *const enums[] = {&cfg->format, &cfg->chroma_site, &cfg->join, &cfg->interpolation, &cfg->output_size,
-                           &cfg->solver, &cfg->motion_model, &cfg->rolling_shutter};
-    const int field = fuzz_below(in, 24);
+                           &cfg->solver, &cfg->motion_model, &cfg->rolling_shutter, &cfg->border};
+    const int field = fuzz_below(in, 25);
     const int32_t value = (int32_t)fuzz_bits(in, 4);
     if (field < 2)
         *ints[field] = value > 64 ? 16385 : value; /* no large frames here: they take long */
@@ -89,7 +92,7 @@ static inline void fuzz_config_spoil(L1L2StabConfig *cfg, FuzzInput *in)
         *ints[field] = value > 0 ? 16385 : value; /* a larger mask than there is would be the caller's fault */
     else if (field < 15)
         *doubles[field - 8] = fuzz_any_double(in);
-    else if (field < 23)
+    else if (field < 24)
         memcpy(enums[field - 15], &value, sizeof value);
     else
         cfg->mask_stride = value > 0 ? -value : value;

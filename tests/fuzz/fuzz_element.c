@@ -313,7 +313,8 @@ static void set_property(GstElement *element, uint64_t value)
     case 6: g_object_set(element, "motion-model", (int)(part * 2.9), NULL); break;
     case 7: g_object_set(element, "rolling-shutter", (int)(part * 2.9), NULL); break;
     case 8: g_object_set(element, "interpolation", (int)(part * 2.9), NULL); break;
-    case 9: g_object_set(element, "output-size", part > 0.5, NULL); break;
+    case 9: g_object_set(element, "output-size", part > 0.5, "border", part < 0.3 ? 1 : 0, "fill-frames",
+                         (int)(part * 20), NULL); break;
     case 10: g_object_set(element, "threads", 1 + (int)(part * 2), NULL); break;
     case 11: g_object_set(element, "post-messages", part > 0.5, NULL); break;
     case 12: g_object_set(element, "region", regions[(int)(part * 4.9)], NULL); break;

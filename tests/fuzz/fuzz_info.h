@@ -35,7 +35,10 @@ static inline void fuzz_check_info(const L1L2StabInfo *info, const L1L2StabConfi
     fuzz_check_matrix(info->C, "C");
     fuzz_check_matrix(info->P, "P");
     fuzz_check_matrix(info->warp, "warp");
-    fuzz_check_inside(info, cfg);
+    if (cfg->border == L1L2STAB_BORDER_CROP)
+        fuzz_check_inside(info, cfg);
+    FUZZ_CHECK(info->filled >= 0 && info->extended >= 0 && info->filled + info->extended <= 1 + 1e-9, "%g, %g",
+               info->filled, info->extended);
     FUZZ_CHECK(info->crop_ratio >= 0.5 && info->crop_ratio <= 0.99, "%g", info->crop_ratio);
     FUZZ_CHECK(info->inliers >= 0 && info->inliers <= info->tracks, "%d of %d", info->inliers, info->tracks);
     FUZZ_CHECK(info->quality >= 0 && info->quality <= 1, "%g", info->quality);

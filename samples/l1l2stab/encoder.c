@@ -300,12 +300,25 @@ static gboolean choose(Encoder *encoder, const char *name, const Options *option
     return TRUE;
 }
 
+/* AVI wants H.264 with start codes. It has no presentation times, so frames have to be in the order in which they are
+ * shown. */
+static void fit_avi(Encoder *encoder)
+{
+    GString *launch = g_string_new(encoder->launch);
+    g_string_replace(launch, "stream-format=avc", "stream-format=byte-stream", 0);
+    g_string_replace(launch, "x264enc name=encoder", "x264enc name=encoder bframes=0", 0);
+    g_free(encoder->launch);
+    encoder->launch = g_string_free(launch, FALSE);
+}
+
 gboolean encoder_choose(Encoder *encoder, const Options *options, const Container *container, const AVStream *video,
                         GError **error)
 {
     char *name = NULL;
     gboolean ok = !options->encoder || split_name(options, &name, &encoder->properties, error);
     ok = ok && choose(encoder, name, options, container, video, error);
+    if (ok && strcmp(container->muxer, "avi") == 0)
+        fit_avi(encoder);
     g_free(name);
     return ok;
 }

@@ -185,6 +185,7 @@ KINDS = [
                                              'mp3'), out='mkv', codec='h264', new_times=True),
     Kind('avi-without-times', 'avi', simple(*H264, '-bf', '2', '-b_strategy', '0', '-c:a', 'mp3'), out='mkv',
          new_times=True),
+    Kind('mp4-to-avi', 'mp4', simple(*H264, '-bf', '2', '-c:a', 'mp3'), out='avi', new_times=True),
     Kind('dv-interlaced', 'avi', simple('-target', 'pal-dv', '-flags', '+ilme+ildct', source=video(720, 576)),
          out='mkv',
          codec='h264'),

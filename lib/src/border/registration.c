@@ -316,7 +316,7 @@ static void register_nodes(L1L2BorderRegistration *r, const Level *level, const 
 /* The displacement at a node by all nodes around it. reach: nodes. */
 static L1L2Point smoothed(const L1L2BorderRegistration *r, int column, int row, int reach, float *agreement)
 {
-    double xx = prior, xy = 0.0, yy = prior, bx = 0.0, by = 0.0, left = 0.0, sum = 0.0;
+    double xx = 0.0, xy = 0.0, yy = 0.0, bx = 0.0, by = 0.0, left = 0.0, sum = 0.0;
     for (int v = row - reach < 0 ? 0 : row - reach; v <= row + reach && v < r->rows; v++)
         for (int u = column - reach < 0 ? 0 : column - reach; u <= column + reach && u < r->columns; u++) {
             const Node *node = &r->node[v * r->columns + u];
@@ -324,9 +324,9 @@ static L1L2Point smoothed(const L1L2BorderRegistration *r, int column, int row, 
                 continue;
             const double d2 = (u - column) * (u - column) + (v - row) * (v - row);
             const double w = 1.0 / ((1.0 + d2) * (1.0 + d2));
-            xx += w * node->xx;
+            xx += w * (node->xx + prior);
             xy += w * node->xy;
-            yy += w * node->yy;
+            yy += w * (node->yy + prior);
             bx += w * (node->xx * node->shift.x + node->xy * node->shift.y);
             by += w * (node->xy * node->shift.x + node->yy * node->shift.y);
             left += w * node->left;
@@ -335,6 +335,8 @@ static L1L2Point smoothed(const L1L2BorderRegistration *r, int column, int row, 
     const double det = xx * yy - xy * xy;
     const double share = sum > 0.0 ? left / sum : 1.0;
     *agreement = (float)fmin(fmax((disagrees - share) / (disagrees - agrees), 0.0), 1.0);
+    if (!(sum > 0.0))
+        return (L1L2Point){0.0, 0.0};
     return (L1L2Point){(yy * bx - xy * by) / det, (xx * by - xy * bx) / det};
 }
 

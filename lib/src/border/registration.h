@@ -13,7 +13,7 @@
  * weight. Near the minimum that is a quadratic form (u - u_n)' H_n (u - u_n), with H_n the sum of the products of O's
  * slopes. So each place takes the displacement that minimizes
  *
- *     sum_n w_n (u - u_n)' H_n (u - u_n) + prior |u|^2,     w_n falls with the distance of node n.
+ *     sum_n w_n ((u - u_n)' H_n (u - u_n) + prior |u|^2),     w_n falls with the distance of node n.
  *
  * Along an edge, H_n says nothing, and other nodes decide. Beyond the border the same sum carries the displacement of
  * the nearest nodes outward.

@@ -58,8 +58,8 @@ START_TEST(a_displacement_is_found_and_carried_outward)
     l1l2_border_register(c.registration, &c.own, &c.neighbor, &c.band, &c.field);
     for (int row = 0; row < c.field.rows; row++) {
         const L1L2Point outermost = c.field.shift[row * c.field.columns];
-        ck_assert_double_le(fabs(outermost.x - shifts[_i][0]), 0.1);
-        ck_assert_double_le(fabs(outermost.y - shifts[_i][1]), 0.1);
+        ck_assert_double_le(fabs(outermost.x - shifts[_i][0]), 0.05);
+        ck_assert_double_le(fabs(outermost.y - shifts[_i][1]), 0.05);
         ck_assert_double_ge(c.field.agreement[row * c.field.columns], 0.99);
     }
     free_case(&c);

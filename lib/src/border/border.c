@@ -10,7 +10,7 @@
 #include "warp/functions.h"
 
 enum {
-    BAND = 40         /* how far beyond a strip pictures are compared, pixels of the gray picture */
+    BAND = 24         /* how far beyond a strip pictures are compared, pixels of the gray picture */
 };
 
 /* The blend at the side of a frame takes 1/160 of the longer side, and 4 pixels at least. */
@@ -36,12 +36,6 @@ struct L1L2Border {
     L1L2BorderComposite composite;
     L1L2BorderMissing *missing;
 };
-
-static bool view_init(L1L2BorderView *view, int width, int height)
-{
-    *view = (L1L2BorderView){width, height, l1l2_mem_new((size_t)width * (size_t)height, sizeof *view->level)};
-    return view->level != NULL;
-}
 
 /* Planes of a whole frame, one after the other. */
 static uint8_t *picture_new(const L1L2BorderConfig *cfg, uint8_t *data[4], ptrdiff_t stride[4])
@@ -74,7 +68,7 @@ static bool source_init(L1L2Border *b, int index)
     slot->registration = l1l2_border_registration_new(b->grays.width, b->grays.height);
     slot->picture = picture_new(&b->cfg, source->data, source->stride);
     return source->field.shift && source->field.agreement && source->offset && slot->registration && slot->picture &&
-           view_init(&slot->view, b->grays.width, b->grays.height) &&
+           l1l2_border_view_init(&slot->view, b->grays.width, b->grays.height) &&
            l1l2_warp_mesh_init(&slot->mesh, b->cfg.width, b->cfg.height);
 }
 
@@ -101,7 +95,7 @@ static bool build(L1L2Border *b)
         return true;
     b->missing = l1l2_border_missing_new();
     if (!b->missing || !l1l2_border_grays_init(&b->grays, cfg->format, cfg->width, cfg->height, 2 * cfg->reach + 1) ||
-        !view_init(&b->own_view, b->grays.width, b->grays.height))
+        !l1l2_border_view_init(&b->own_view, b->grays.width, b->grays.height))
         return false;
     for (int i = 0; i < L1L2_BORDER_MAX_SOURCES; i++)
         if (!source_init(b, i))
@@ -127,7 +121,7 @@ void l1l2_border_free(L1L2Border *b)
         return;
     for (int i = 0; i < L1L2_BORDER_MAX_SOURCES; i++) {
         l1l2_warp_mesh_clear(&b->slot[i].mesh);
-        l1l2_mem_free(b->slot[i].view.level);
+        l1l2_border_view_clear(&b->slot[i].view);
         l1l2_border_registration_free(b->slot[i].registration);
         l1l2_mem_free(b->slot[i].picture);
         l1l2_mem_free(b->source[i].field.shift);
@@ -136,7 +130,7 @@ void l1l2_border_free(L1L2Border *b)
     }
     l1l2_border_missing_free(b->missing);
     l1l2_border_grays_clear(&b->grays);
-    l1l2_mem_free(b->own_view.level);
+    l1l2_border_view_clear(&b->own_view);
     l1l2_warp_mesh_clear(&b->own_mesh);
     l1l2_mem_free(b->composite.provider);
     l1l2_mem_free(b);

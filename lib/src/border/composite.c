@@ -279,7 +279,7 @@ static void paint(const Row *row, int u, int i, const Positions *own, const Posi
         const L1L2BorderSource *source = &c->source[s];
         if (i < row->from[s] || i >= row->end[s])
             continue;
-        float weight = weight_at(plane, other[s].depth[i]);
+        float weight = weight_at(plane, other[s].depth[i - row->from[s]]);
         if (weight == 0.0f)
             continue;
         const float at = (float)node_index(sample, plane->width, source->field.columns);
@@ -337,10 +337,11 @@ static void paint_run(Row *row, int u, int count)
     for (int s = 0; s < c->sources; s++) {
         const L1L2WarpRect *pixels = &c->source[s].part.rect[row->strip];
         const L1L2WarpRect part = l1l2_warp_rect_samples(pixels, plane->log2_sub_x, plane->log2_sub_y);
-        row->from[s] = part.left - u > first ? part.left - u : first;
+        const int from = part.left - u > first ? part.left - u : first;
+        row->from[s] = from;
         row->end[s] = row->v < part.top || row->v >= part.bottom ? 0 : part.right - u < end ? part.right - u : end;
-        if (row->from[s] < row->end[s])
-            find_positions(plane, c->source[s].mesh, u, row->v, count, &other[s]);
+        if (from < row->end[s])
+            find_positions(plane, c->source[s].mesh, u + from, row->v, row->end[s] - from, &other[s]);
     }
     for (int i = first; i < end; i++)
         if (own.depth[i] < (float)(rim_px + c->seam))

@@ -35,7 +35,6 @@ typedef struct Level {
 
 struct L1L2BorderRegistration {
     int width, height, columns, rows;
-    float *half[2];   /* own and neighbor at half size */
     Node *node;
 };
 
@@ -59,11 +58,8 @@ L1L2BorderRegistration *l1l2_border_registration_new(int width, int height)
     r->height = height;
     r->columns = l1l2_border_nodes(width);
     r->rows = l1l2_border_nodes(height);
-    const size_t half = (size_t)halved(width) * (size_t)halved(height);
-    r->half[0] = l1l2_mem_new(half, sizeof(float));
-    r->half[1] = l1l2_mem_new(half, sizeof(float));
     r->node = l1l2_mem_new((size_t)r->columns * (size_t)r->rows, sizeof *r->node);
-    if (r->half[0] && r->half[1] && r->node)
+    if (r->node)
         return r;
     l1l2_border_registration_free(r);
     return NULL;
@@ -73,22 +69,22 @@ void l1l2_border_registration_free(L1L2BorderRegistration *r)
 {
     if (!r)
         return;
-    l1l2_mem_free(r->half[0]);
-    l1l2_mem_free(r->half[1]);
     l1l2_mem_free(r->node);
     l1l2_mem_free(r);
 }
 
-static float gray_at(const L1L2BorderGray *gray, int width, int height, double x, double y)
+/* Bilinear, with the edge repeated within half a pixel; < 0 outside. */
+static inline float gray_at(const L1L2BorderGray *gray, int width, int height, float x, float y)
 {
-    if (!(x >= -0.5 && y >= -0.5 && x <= width - 0.5 && y <= height - 0.5))
+    if (!(x >= -0.5f && y >= -0.5f && x <= (float)width - 0.5f && y <= (float)height - 0.5f))
         return -1.0f;
-    x = fmin(fmax(x, 0.0), width - 1);
-    y = fmin(fmax(y, 0.0), height - 1);
-    const int left = x >= width - 1 ? width - 2 : (int)x, top = y >= height - 1 ? height - 2 : (int)y;
-    const float fx = (float)(x - left), fy = (float)(y - top);
+    x = x < 0.0f ? 0.0f : x;
+    y = y < 0.0f ? 0.0f : y;
+    const int left = x >= (float)(width - 1) ? width - 2 : (int)x, top = y >= (float)(height - 1) ? height - 2 : (int)y;
+    const float over_x = x - (float)left, over_y = y - (float)top;
+    const float fx = over_x > 1.0f ? 1.0f : over_x, fy = over_y > 1.0f ? 1.0f : over_y;
     const uint8_t *p = gray->level + top * width + left;
-    const float above = p[0] + fx * (p[1] - p[0]), below = p[width] + fx * (p[width + 1] - p[width]);
+    const float above = p[0] + fx * (float)(p[1] - p[0]), below = p[width] + fx * (float)(p[width + 1] - p[width]);
     return above + fy * (below - above);
 }
 
@@ -113,18 +109,59 @@ static void view_row(const L1L2BorderView *view, const L1L2BorderGray *gray, con
     const double row = (j + 0.5) / view->height * (mesh->rows - 1);
     const double columns = (double)(mesh->columns - 1) / view->width;
     int cell = -1;
-    MeshRow run = {{0.0, 0.0}, {0.0, 0.0}};
+    float from_x = 0.0f, from_y = 0.0f, step_x = 0.0f, step_y = 0.0f;
     for (int i = first; i < end; i++) {
-        const double at = (i + 0.5) * columns;
+        const float at = (float)((i + 0.5) * columns);
         if ((int)at != cell) {
-            cell = (int)at;
-            run = mesh_cell(mesh, cell, row);
+            cell = (int)at < mesh->columns - 1 ? (int)at : mesh->columns - 2;
+            const MeshRow run = mesh_cell(mesh, cell, row);
+            from_x = (float)(run.from.x * to_x + 0.5 * view->width - 0.5), step_x = (float)(run.step.x * to_x);
+            from_y = (float)(run.from.y * to_y + 0.5 * view->height - 0.5), step_y = (float)(run.step.y * to_y);
         }
-        const double part = at - cell;
-        const double x = (run.from.x + part * run.step.x) * to_x + 0.5 * view->width - 0.5;
-        const double y = (run.from.y + part * run.step.y) * to_y + 0.5 * view->height - 0.5;
-        view->level[j * view->width + i] = gray_at(gray, view->width, view->height, x, y);
+        const float part = at - (float)cell;
+        view->level[j * view->width + i] = gray_at(gray, view->width, view->height, from_x + part * step_x,
+                                                   from_y + part * step_y);
     }
+}
+
+bool l1l2_border_view_init(L1L2BorderView *view, int width, int height)
+{
+    *view = (L1L2BorderView){
+        .width = width,
+        .height = height,
+        .level = l1l2_mem_new((size_t)width * (size_t)height, sizeof(float)),
+        .half = l1l2_mem_new((size_t)halved(width) * (size_t)halved(height), sizeof(float)),
+    };
+    return view->level && view->half;
+}
+
+void l1l2_border_view_clear(L1L2BorderView *view)
+{
+    l1l2_mem_free(view->level);
+    l1l2_mem_free(view->half);
+    *view = (L1L2BorderView){0};
+}
+
+/* Halves the rows of a rectangle of the picture. */
+static void halve(const L1L2BorderView *view, const L1L2WarpRect *rect)
+{
+    const int width = view->width, half_width = halved(width);
+    for (int j = rect->top / 2; j < halved(rect->bottom); j++)
+        for (int i = rect->left / 2; i < halved(rect->right); i++) {
+            const int right = 2 * i + 1 < width ? 1 : 0, below = 2 * j + 1 < view->height ? width : 0;
+            const float *p = view->level + 2 * j * width + 2 * i;
+            const bool known = p[0] >= 0.0f && p[right] >= 0.0f && p[below] >= 0.0f && p[below + right] >= 0.0f;
+            view->half[j * half_width + i] =
+                known ? 0.25f * (p[0] + p[right] + p[below] + p[below + right]) : -1.0f;
+        }
+}
+
+void l1l2_border_view_halve(const L1L2BorderView *view, const L1L2BorderBand *band)
+{
+    for (int i = 0; i < halved(view->width) * halved(view->height); i++)
+        view->half[i] = -1.0f;
+    for (int k = 0; k < band->count; k++)
+        halve(view, &band->rect[k]);
 }
 
 void l1l2_border_view(const L1L2BorderView *view, const L1L2BorderGray *gray, const L1L2WarpMesh *mesh,
@@ -135,18 +172,7 @@ void l1l2_border_view(const L1L2BorderView *view, const L1L2BorderGray *gray, co
     for (int k = 0; k < band->count; k++)
         for (int j = band->rect[k].top; j < band->rect[k].bottom; j++)
             view_row(view, gray, mesh, j, band->rect[k].left, band->rect[k].right);
-}
-
-static void halve(const float *picture, int width, int height, float *half)
-{
-    const int half_width = halved(width), half_height = halved(height);
-    for (int j = 0; j < half_height; j++)
-        for (int i = 0; i < half_width; i++) {
-            const int right = 2 * i + 1 < width ? 1 : 0, below = 2 * j + 1 < height ? width : 0;
-            const float *p = picture + 2 * j * width + 2 * i;
-            const bool known = p[0] >= 0.0f && p[right] >= 0.0f && p[below] >= 0.0f && p[below + right] >= 0.0f;
-            half[j * half_width + i] = known ? 0.25f * (p[0] + p[right] + p[below] + p[below + right]) : -1.0f;
-        }
+    l1l2_border_view_halve(view, band);
 }
 
 /* One patch of the own picture: its levels and slopes, row by row. */
@@ -357,11 +383,9 @@ void l1l2_border_register(L1L2BorderRegistration *r, const L1L2BorderView *own, 
     memset(r->node, 0, (size_t)count * sizeof *r->node);
     memset(field->shift, 0, (size_t)count * sizeof *field->shift);
     memset(field->agreement, 0, (size_t)count * sizeof *field->agreement);
-    halve(own->level, r->width, r->height, r->half[0]);
-    halve(neighbor->level, r->width, r->height, r->half[1]);
     const Level level[LEVELS] = {
         {r->width, r->height, own->level, neighbor->level},
-        {halved(r->width), halved(r->height), r->half[0], r->half[1]},
+        {halved(r->width), halved(r->height), own->half, neighbor->half},
     };
     for (int k = LEVELS - 1; k >= 0; k--) {
         register_nodes(r, &level[k], band);

@@ -40,7 +40,14 @@ typedef struct L1L2BorderField {
 typedef struct L1L2BorderView {
     int width, height;
     float *level; /* [height * width]; < 0: outside the source */
+    float *half;  /* the same at half the size, rounded up */
 } L1L2BorderView;
+
+/* False when out of memory. */
+bool l1l2_border_view_init(L1L2BorderView *view, int width, int height);
+
+/* A zeroed view is allowed. */
+void l1l2_border_view_clear(L1L2BorderView *view);
 
 /* Memory for one registration. */
 typedef struct L1L2BorderRegistration L1L2BorderRegistration;
@@ -62,6 +69,9 @@ int l1l2_border_nodes(int size);
  * the band nothing is known. */
 void l1l2_border_view(const L1L2BorderView *view, const L1L2BorderGray *gray, const L1L2WarpMesh *mesh,
                       const L1L2BorderBand *band);
+
+/* Makes a view's half from its levels, in the band. l1l2_border_view() does so, too. */
+void l1l2_border_view_halve(const L1L2BorderView *view, const L1L2BorderBand *band);
 
 /* Registers a neighbor in the band, which both views have to hold. Outside the band the field is undefined. The field's
  * arrays are the caller's. */

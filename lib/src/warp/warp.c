@@ -24,7 +24,8 @@ enum {
     CACHE_LINE = 64,
     ROWS_AHEAD = 6, /* rows from a position to what is prefetched: beyond the taps of this run and of the next one */
     TILE_RUNS = 2,
-    BAND_ROWS = 32  /* enough work for a thread, few enough rows to share a frame evenly */
+    BAND_ROWS = 32, /* enough work for a thread, few enough rows to share a frame evenly */
+    FEWEST_ROWS = 4 /* of a band in a part of a frame */
 };
 
 /* One plane of all frames. */
@@ -57,7 +58,7 @@ typedef struct PlaneJob {
     uint8_t *dst;
     ptrdiff_t dst_stride;
     L1L2WarpRect part;      /* samples to render */
-    int bands;
+    int bands, band_rows;
     bool copies;            /* output sample (u, v) is source sample (u + step_x, v + step_y) */
     int step_x, step_y;
 } PlaneJob;
@@ -257,8 +258,8 @@ static void render_part(void *context, int index)
     const PlaneJob *plane = job->plane;
     for (; index >= plane->bands; plane++)
         index -= plane->bands;
-    const int first = plane->part.top + index * BAND_ROWS, bottom = plane->part.bottom;
-    const int end = first + BAND_ROWS < bottom ? first + BAND_ROWS : bottom;
+    const int rows = plane->band_rows, first = plane->part.top + index * rows, bottom = plane->part.bottom;
+    const int end = first + rows < bottom ? first + rows : bottom;
     if (plane->copies)
         copy_band(plane, first, end);
     else
@@ -270,6 +271,14 @@ L1L2WarpRect l1l2_warp_rect_samples(const L1L2WarpRect *pixels, int log2_sub_x, 
     return (L1L2WarpRect){pixels->left >> log2_sub_x, pixels->top >> log2_sub_y,
                           l1l2_image_plane_size(pixels->right, log2_sub_x),
                           l1l2_image_plane_size(pixels->bottom, log2_sub_y)};
+}
+
+/* A part may have few rows: it has eight bands at least, as long as they are not too low. */
+static void share_rows(PlaneJob *job)
+{
+    const int rows = job->part.bottom - job->part.top;
+    job->band_rows = clamp((rows + 7) / 8, FEWEST_ROWS, BAND_ROWS);
+    job->bands = rows > 0 ? (rows + job->band_rows - 1) / job->band_rows : 0;
 }
 
 static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const L1L2WarpRect *part, const uint8_t *const src[4],
@@ -291,7 +300,7 @@ static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const L1L2WarpRec
             .dst_stride = dst_stride[i],
             .part = l1l2_warp_rect_samples(part, format->plane[i].log2_sub_x, format->plane[i].log2_sub_y),
         };
-        job.plane[i].bands = (job.plane[i].part.bottom - job.plane[i].part.top + BAND_ROWS - 1) / BAND_ROWS;
+        share_rows(&job.plane[i]);
         if (!map->mesh)
             find_step(&job.plane[i]);
         bands += job.plane[i].bands;

@@ -25,10 +25,9 @@ static double texture(double x, double y)
 /* The own picture lacks its left MISSING columns. The neighbor shows all, displaced, and brighter. */
 static Case make_case(double dx, double dy, double brighter)
 {
-    Case c = {.own = {WIDTH, HEIGHT, malloc(sizeof(float) * WIDTH * HEIGHT)},
-              .neighbor = {WIDTH, HEIGHT, malloc(sizeof(float) * WIDTH * HEIGHT)},
-              .registration = l1l2_border_registration_new(WIDTH, HEIGHT),
+    Case c = {.registration = l1l2_border_registration_new(WIDTH, HEIGHT),
               .band = {1, {{0, 0, BAND, HEIGHT}}}};
+    ck_assert(l1l2_border_view_init(&c.own, WIDTH, HEIGHT) && l1l2_border_view_init(&c.neighbor, WIDTH, HEIGHT));
     c.field.columns = l1l2_border_nodes(WIDTH), c.field.rows = l1l2_border_nodes(HEIGHT);
     const size_t nodes = (size_t)(c.field.columns * c.field.rows);
     c.field.shift = calloc(nodes, sizeof *c.field.shift);
@@ -41,10 +40,17 @@ static Case make_case(double dx, double dy, double brighter)
     return c;
 }
 
+static void register_case(Case *c)
+{
+    l1l2_border_view_halve(&c->own, &c->band);
+    l1l2_border_view_halve(&c->neighbor, &c->band);
+    l1l2_border_register(c->registration, &c->own, &c->neighbor, &c->band, &c->field);
+}
+
 static void free_case(Case *c)
 {
-    free(c->own.level);
-    free(c->neighbor.level);
+    l1l2_border_view_clear(&c->own);
+    l1l2_border_view_clear(&c->neighbor);
     free(c->field.shift);
     free(c->field.agreement);
     l1l2_border_registration_free(c->registration);
@@ -55,7 +61,7 @@ START_TEST(a_displacement_is_found_and_carried_outward)
 {
     const double shifts[][2] = {{0.0, 0.0}, {0.4, -0.3}, {2.6, 1.7}, {-5.0, 3.0}};
     Case c = make_case(shifts[_i][0], shifts[_i][1], 9.0);
-    l1l2_border_register(c.registration, &c.own, &c.neighbor, &c.band, &c.field);
+    register_case(&c);
     for (int row = 0; row < c.field.rows; row++) {
         const L1L2Point outermost = c.field.shift[row * c.field.columns];
         ck_assert_double_le(fabs(outermost.x - shifts[_i][0]), 0.05);
@@ -72,7 +78,7 @@ START_TEST(pictures_of_other_things_do_not_agree)
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         if (c.neighbor.level[i] >= 0.0f)
             c.neighbor.level[i] = (float)texture(1.7 * (i / WIDTH) + 400.0, 1.3 * (i % WIDTH));
-    l1l2_border_register(c.registration, &c.own, &c.neighbor, &c.band, &c.field);
+    register_case(&c);
     for (int row = 0; row < c.field.rows; row++)
         ck_assert_double_le(c.field.agreement[row * c.field.columns], 0.5);
     free_case(&c);
@@ -86,7 +92,7 @@ START_TEST(without_texture_nothing_is_moved)
         c.own.level[i] = c.own.level[i] < 0.0f ? -1.0f : 90.0f;
         c.neighbor.level[i] = c.neighbor.level[i] < 0.0f ? -1.0f : 95.0f;
     }
-    l1l2_border_register(c.registration, &c.own, &c.neighbor, &c.band, &c.field);
+    register_case(&c);
     for (int row = 0; row < c.field.rows; row++) {
         ck_assert_double_le(fabs(c.field.shift[row * c.field.columns].x), 1e-6);
         ck_assert_double_le(fabs(c.field.shift[row * c.field.columns].y), 1e-6);

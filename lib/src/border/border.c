@@ -185,13 +185,12 @@ static L1L2WarpRect inner_part(const L1L2WarpMesh *mesh, double margin)
 /* What is outside the inner part, as rectangles that do not overlap. */
 static L1L2BorderStrips lay_strips(const L1L2WarpRect *inner, int width, int height)
 {
-    L1L2BorderStrips strips;
-    L1L2WarpRect *strip = strips.rect;
-    strip[0] = (L1L2WarpRect){0, 0, width, inner->top};
-    strip[1] = (L1L2WarpRect){0, inner->bottom, width, height};
-    strip[2] = (L1L2WarpRect){0, inner->top, inner->left, inner->bottom};
-    strip[3] = (L1L2WarpRect){inner->right, inner->top, width, inner->bottom};
-    return strips;
+    return (L1L2BorderStrips){{
+        {0, 0, width, inner->top},
+        {0, inner->bottom, width, height},
+        {0, inner->top, inner->left, inner->bottom},
+        {inner->right, inner->top, width, inner->bottom},
+    }};
 }
 
 /* The parts of the gray picture that tell where the strips have to be taken from. */

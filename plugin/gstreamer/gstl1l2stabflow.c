@@ -171,9 +171,11 @@ render (GstL1L2StabFlow * flow, GstClockTime stream_time, GstBuffer * output)
   gst_l1l2_stab_copy_meta_map_regions (output, &map, &stream->out_info);
   gst_l1l2_stab_report_out (&stream->report, output, &info, &map,
       &stream->in_info, &stream->out_info);
-  if (gst_l1l2_stab_settings_border_map (flow->settings))
+  if (gst_l1l2_stab_settings_flag (flow->settings,
+          &flow->settings->border_map))
     add_border_map (stream, output);
-  if (gst_l1l2_stab_settings_post_messages (flow->settings))
+  if (gst_l1l2_stab_settings_flag (flow->settings,
+          &flow->settings->post_messages))
     gst_element_post_message (GST_ELEMENT_CAST (flow->trans),
         gst_l1l2_stab_report_message (&stream->report, output, &info,
             &flow->trans->segment));

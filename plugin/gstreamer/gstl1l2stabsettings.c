@@ -382,6 +382,18 @@ gst_l1l2_stab_settings_sample (GstL1L2StabSettings * settings,
   GST_OBJECT_UNLOCK (settings->object);
 }
 
+gboolean
+gst_l1l2_stab_settings_flag (GstL1L2StabSettings * settings,
+    const gboolean * flag)
+{
+  gboolean value;
+
+  GST_OBJECT_LOCK (settings->object);
+  value = *flag;
+  GST_OBJECT_UNLOCK (settings->object);
+  return value;
+}
+
 /* Only this property is updated by the controller. The other controlled properties hold the values of the last frame
  * that came in, which is a window later, and must keep them. */
 gboolean
@@ -405,32 +417,7 @@ gst_l1l2_stab_settings_sample_bypass (GstL1L2StabSettings * settings,
     g_free (controlled);
     return bypass;
   }
-  GST_OBJECT_LOCK (settings->object);
-  bypass = settings->bypass;
-  GST_OBJECT_UNLOCK (settings->object);
-  return bypass;
-}
-
-gboolean
-gst_l1l2_stab_settings_post_messages (GstL1L2StabSettings * settings)
-{
-  gboolean post_messages;
-
-  GST_OBJECT_LOCK (settings->object);
-  post_messages = settings->post_messages;
-  GST_OBJECT_UNLOCK (settings->object);
-  return post_messages;
-}
-
-gboolean
-gst_l1l2_stab_settings_border_map (GstL1L2StabSettings * settings)
-{
-  gboolean border_map;
-
-  GST_OBJECT_LOCK (settings->object);
-  border_map = settings->border_map;
-  GST_OBJECT_UNLOCK (settings->object);
-  return border_map;
+  return gst_l1l2_stab_settings_flag (settings, &settings->bypass);
 }
 
 void

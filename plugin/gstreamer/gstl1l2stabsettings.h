@@ -61,8 +61,10 @@ void gst_l1l2_stab_settings_sample (GstL1L2StabSettings * settings,
 /* The values for a frame that goes out. stream_time: that of the frame. */
 gboolean gst_l1l2_stab_settings_sample_bypass (GstL1L2StabSettings * settings,
     GstClockTime stream_time);
-gboolean gst_l1l2_stab_settings_post_messages (GstL1L2StabSettings * settings);
-gboolean gst_l1l2_stab_settings_border_map (GstL1L2StabSettings * settings);
+
+/* The present value of one of the settings' booleans. */
+gboolean gst_l1l2_stab_settings_flag (GstL1L2StabSettings * settings,
+    const gboolean * flag);
 
 /* Copies of the texts and file names, each to be freed or NULL. */
 void gst_l1l2_stab_settings_dup_files (GstL1L2StabSettings * settings,

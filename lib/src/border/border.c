@@ -183,9 +183,9 @@ static L1L2WarpRect inner_part(const L1L2WarpMesh *mesh, double margin)
 }
 
 /* What is outside the inner part, as rectangles that do not overlap. */
-static L1L2BorderStrips lay_strips(const L1L2WarpRect *inner, int width, int height)
+static L1L2WarpParts lay_strips(const L1L2WarpRect *inner, int width, int height)
 {
-    return (L1L2BorderStrips){{
+    return (L1L2WarpParts){L1L2_BORDER_STRIPS, {
         {0, 0, width, inner->top},
         {0, inner->bottom, width, height},
         {0, inner->top, inner->left, inner->bottom},
@@ -194,7 +194,7 @@ static L1L2BorderStrips lay_strips(const L1L2WarpRect *inner, int width, int hei
 }
 
 /* The parts of the gray picture that tell where the strips have to be taken from. */
-static L1L2BorderBand band_around(const L1L2Border *b, const L1L2BorderStrips *strips)
+static L1L2BorderBand band_around(const L1L2Border *b, const L1L2WarpParts *strips)
 {
     const int width = b->grays.width, height = b->grays.height;
     const double to_x = (double)width / b->cfg.width, to_y = (double)height / b->cfg.height;
@@ -292,10 +292,8 @@ static void render_sources(L1L2Border *b, const L1L2BorderJob *job, const L1L2Wa
     l1l2_pool_run(b->cfg.pool, choice.count, register_source, &registration);
     for (int i = 0; i < choice.count; i++) {
         const L1L2WarpMap map = {.mesh = b->source[i].mesh, .affine = l1l2_mat_identity()};
-        for (int k = 0; k < L1L2_BORDER_STRIPS; k++)
-            if (!l1l2_border_is_empty(&choice.part[i].rect[k]))
-                l1l2_warp_render_part(b->cfg.warp, &map, &choice.part[i].rect[k], registration.neighbor[i]->data,
-                                      registration.neighbor[i]->stride, b->source[i].data, b->source[i].stride);
+        l1l2_warp_render_parts(b->cfg.warp, &map, &choice.part[i], registration.neighbor[i]->data,
+                               registration.neighbor[i]->stride, b->source[i].data, b->source[i].stride);
     }
 }
 

@@ -175,8 +175,7 @@ static void spread(const L1L2BorderField *field, const NodeSum *sums, int compon
             for (int v = row - reach < 0 ? 0 : row - reach; v <= row + reach && v < field->rows; v++)
                 for (int u = column - reach < 0 ? 0 : column - reach; u <= column + reach && u < field->columns; u++) {
                     const NodeSum *node = &sums[v * field->columns + u];
-                    const double d2 = (u - column) * (u - column) + (v - row) * (v - row);
-                    const double w = 1.0 / ((1.0 + d2) * (1.0 + d2));
+                    const double w = l1l2_border_nearness(u - column, v - row);
                     sum += w * (double)node->sum[component];
                     count += w * node->count;
                 }
@@ -265,59 +264,76 @@ static void note_provider(const Row *row, int u, int provider)
         c->provider[row->v * c->width + x] = (uint8_t)provider;
 }
 
-/* Paints sample u + i of the run. */
+/* A sample that is being put together. */
+typedef struct Blend {
+    float value[L1L2_BORDER_COMPONENTS]; /* of the layers so far, without the frame itself */
+    float rest;                          /* what they have left */
+    float most;                          /* the largest weight of them */
+    int provider;                        /* whose weight it is */
+} Blend;
+
+/* Adds a source that has `weight` at a sample. */
+static void add_source(const Row *row, int index, int sample, float weight, Blend *blend)
+{
+    if (weight == 0.0f)
+        return;
+    const Plane *plane = row->plane;
+    const L1L2BorderSource *source = &plane->composite->source[index];
+    const float at = (float)node_index(sample, plane->width, source->field.columns);
+    const int node = (int)at;
+    const float part = at - (float)node, *agreement = row->agreement[index] + node;
+    const uint8_t *picture = source->data[plane->index] + row->v * source->stride[plane->index];
+    weight *= blend->rest * (agreement[0] + part * (agreement[1] - agreement[0]));
+    for (int k = 0; k < plane->components; k++) {
+        const float *offset = row->offset[index][k] + node, add = offset[0] + part * (offset[1] - offset[0]);
+        blend->value[k] += weight * ((float)read_component(plane, picture, sample, k) + add);
+    }
+    blend->rest -= weight;
+    if (weight > blend->most) {
+        blend->most = weight;
+        blend->provider = L1L2_BORDER_NEIGHBOR + source->distance;
+    }
+}
+
+/* Outside the frame, the sources share what they left, if they have a good part; otherwise it is extended. */
+static void fill_rest(const Plane *plane, const Positions *own, int i, Blend *blend)
+{
+    if (1.0f - blend->rest >= least_weight) {
+        for (int k = 0; k < plane->components; k++)
+            blend->value[k] /= 1.0f - blend->rest;
+        return;
+    }
+    float extension[L1L2_BORDER_COMPONENTS];
+    extend(plane, own->x[i], own->y[i], own->depth[i], extension);
+    for (int k = 0; k < plane->components; k++)
+        blend->value[k] += blend->rest * extension[k];
+    blend->provider = L1L2_BORDER_EXTENDED;
+}
+
+/* Paints sample u + i of the run. Inside the frame, the frame takes what the sources leave. */
 static void paint(const Row *row, int u, int i, const Positions *own, const Positions *other)
 {
     const Plane *plane = row->plane;
     const L1L2BorderComposite *c = plane->composite;
-    const int p = plane->index, sample = u + i;
-    uint8_t *out = c->dst[p] + row->v * c->dst_stride[p];
+    const int sample = u + i;
+    uint8_t *out = c->dst[plane->index] + row->v * c->dst_stride[plane->index];
     const float mine = weight_at(plane, own->depth[i]);
-    float rest = 1.0f - mine, value[L1L2_BORDER_COMPONENTS] = {0.0f}, most = mine;
-    int provider = L1L2_BORDER_OWN;
-    for (int s = 0; s < c->sources && rest > 0.0f; s++) {
-        const L1L2BorderSource *source = &c->source[s];
-        if (i < row->from[s] || i >= row->end[s])
-            continue;
-        float weight = weight_at(plane, other[s].depth[i - row->from[s]]);
-        if (weight == 0.0f)
-            continue;
-        const float at = (float)node_index(sample, plane->width, source->field.columns);
-        const int node = (int)at;
-        const float part = at - (float)node, *agreement = row->agreement[s] + node;
-        weight *= rest * (agreement[0] + part * (agreement[1] - agreement[0]));
-        const uint8_t *picture = source->data[p] + row->v * source->stride[p];
-        for (int k = 0; k < plane->components; k++) {
-            const float *offset = row->offset[s][k] + node;
-            value[k] += weight * ((float)read_component(plane, picture, sample, k) + offset[0] +
-                                  part * (offset[1] - offset[0]));
-        }
-        rest -= weight;
-        if (weight > most) {
-            most = weight;
-            provider = L1L2_BORDER_NEIGHBOR + source->distance;
-        }
-    }
-    const bool outside = own->depth[i] < 0.0f;
-    float left = outside ? rest : 0.0f, keeps = outside ? 0.0f : mine + rest;
-    if (left <= 1.0f - least_weight) { /* the sources share it */
-        for (int k = 0; k < plane->components; k++)
-            value[k] /= 1.0f - left;
-        left = 0.0f;
-    }
-    if (left > 0.0f) {
-        float extension[L1L2_BORDER_COMPONENTS];
-        extend(plane, own->x[i], own->y[i], own->depth[i], extension);
-        for (int k = 0; k < plane->components; k++)
-            value[k] += left * extension[k];
-        if (left > most)
-            provider = L1L2_BORDER_EXTENDED;
-    } else if (keeps > most) {
-        provider = L1L2_BORDER_OWN;
+    Blend blend = {.rest = 1.0f - mine, .most = mine, .provider = L1L2_BORDER_OWN};
+    for (int s = 0; s < c->sources && blend.rest > 0.0f; s++)
+        if (i >= row->from[s] && i < row->end[s])
+            add_source(row, s, sample, weight_at(plane, other[s].depth[i - row->from[s]]), &blend);
+    float keeps = 0.0f;
+    if (own->depth[i] < 0.0f) {
+        fill_rest(plane, own, i, &blend);
+    } else {
+        keeps = mine + blend.rest;
+        if (keeps > blend.most)
+            blend.provider = L1L2_BORDER_OWN;
     }
     for (int k = 0; k < plane->components; k++)
-        write_component(plane, out, sample, k, value[k] + keeps * (float)read_component(plane, out, sample, k));
-    note_provider(row, sample, provider);
+        write_component(plane, out, sample, k,
+                        blend.value[k] + keeps * (float)read_component(plane, out, sample, k));
+    note_provider(row, sample, blend.provider);
 }
 
 static void paint_run(Row *row, int u, int count)

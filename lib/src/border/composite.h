@@ -32,7 +32,7 @@ enum { L1L2_BORDER_OWN = 0, L1L2_BORDER_NEIGHBOR = 128, L1L2_BORDER_EXTENDED = 2
 typedef struct L1L2BorderSource {
     int distance;                /* frames from the frame that is filled, its number minus that one's */
     const L1L2WarpMesh *mesh;    /* output -> source positions */
-    L1L2BorderStrips part;       /* of the strips: where it may be shown */
+    L1L2WarpParts part;       /* of the strips: where it may be shown */
     uint8_t *data[4];            /* the source in the output's geometry, rendered there */
     ptrdiff_t stride[4];
     L1L2BorderField field;
@@ -57,7 +57,7 @@ typedef struct L1L2BorderComposite {
     const ptrdiff_t *src_stride;
     uint8_t *const *dst;         /* the output, with the frame rendered into it */
     const ptrdiff_t *dst_stride;
-    L1L2BorderStrips strips;
+    L1L2WarpParts strips;
     int sources;
     L1L2BorderSource *source;
 } L1L2BorderComposite;

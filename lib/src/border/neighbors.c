@@ -171,6 +171,8 @@ static void include(L1L2WarpRect *part, const L1L2WarpRect *strip, L1L2Point at,
 /* Which parts each chosen neighbor has to be rendered in: each point is shown by the nearest one that covers it. */
 static void share_out(Search *search)
 {
+    for (int i = 0; i < search->choice.count; i++)
+        search->choice.part[i].count = L1L2_BORDER_STRIPS;
     const double reach_x = part_reach * search->need->width / (LATTICE - 1);
     const double reach_y = part_reach * search->need->height / (LATTICE - 1);
     for (int i = 0; i < search->missing->count; i++) {

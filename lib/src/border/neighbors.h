@@ -26,14 +26,9 @@
 enum {
     L1L2_BORDER_MAX_FRAMES = 120, /* from the frame that is filled, either way */
     L1L2_BORDER_MAX_SOURCES = 8, /* that one frame is filled from */
-    L1L2_BORDER_STRIPS = 4,
+    L1L2_BORDER_STRIPS = L1L2_WARP_MAX_PARTS, /* what lies outside all of them shows the frame alone */
     L1L2_BORDER_ALIGN = 4        /* strips begin at multiples of so many pixels: at whole samples of any plane */
 };
-
-/* A rectangle of the output for each side: what lies outside all of them shows the frame alone. They do not overlap. */
-typedef struct L1L2BorderStrips {
-    L1L2WarpRect rect[L1L2_BORDER_STRIPS];
-} L1L2BorderStrips;
 
 /* A frame that may fill the border of frame t. */
 typedef struct L1L2BorderNeighbor {
@@ -46,7 +41,7 @@ typedef struct L1L2BorderNeighbor {
 typedef struct L1L2BorderChoice {
     int count;
     int neighbor[L1L2_BORDER_MAX_SOURCES]; /* indices, the nearest one first */
-    L1L2BorderStrips part[L1L2_BORDER_MAX_SOURCES]; /* of the strips: where each of them may be shown */
+    L1L2WarpParts part[L1L2_BORDER_MAX_SOURCES]; /* of the strips: where each of them may be shown */
 } L1L2BorderChoice;
 
 /* A frame whose border is to be filled. */
@@ -54,7 +49,7 @@ typedef struct L1L2BorderNeed {
     int64_t t;                /* its number */
     const L1L2Mat *map;       /* output pixel -> source pixel */
     int width, height;        /* of output and source, pixels */
-    L1L2BorderStrips strips;
+    L1L2WarpParts strips;
 } L1L2BorderNeed;
 
 /* Memory for a choice: too much for the stack of some threads. */

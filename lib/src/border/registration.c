@@ -348,8 +348,7 @@ static L1L2Point smoothed(const L1L2BorderRegistration *r, int column, int row, 
             const Node *node = &r->node[v * r->columns + u];
             if (!node->known)
                 continue;
-            const double d2 = (u - column) * (u - column) + (v - row) * (v - row);
-            const double w = 1.0 / ((1.0 + d2) * (1.0 + d2));
+            const double w = l1l2_border_nearness(u - column, v - row);
             xx += w * (node->xx + prior);
             xy += w * node->xy;
             yy += w * (node->yy + prior);

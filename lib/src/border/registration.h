@@ -62,7 +62,14 @@ typedef struct L1L2BorderBand {
     L1L2WarpRect rect[L1L2_BORDER_STRIPS];
 } L1L2BorderBand;
 
-/* The grid's size for gray pictures of width x height. */
+/* The weight w_n of a node that is so many columns and rows away. */
+static inline double l1l2_border_nearness(int columns, int rows)
+{
+    const double farther = 1.0 + columns * columns + rows * rows;
+    return 1.0 / (farther * farther);
+}
+
+/* How many nodes lie along a side of the gray picture. */
 int l1l2_border_nodes(int size);
 
 /* Renders a gray picture into the output's geometry: mesh takes output pixels to positions of the frame. Outside

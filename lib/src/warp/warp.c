@@ -64,7 +64,7 @@ typedef struct PlaneJob {
 } PlaneJob;
 
 typedef struct FrameJob {
-    PlaneJob plane[L1L2_MAX_PLANES];
+    PlaneJob plane[L1L2_MAX_PLANES * L1L2_WARP_MAX_PARTS]; /* each plane's parts */
 } FrameJob;
 
 static bool prepare_packed(L1L2Warp *w)
@@ -251,8 +251,8 @@ static void render_band(const PlaneJob *job, int first, int end)
     }
 }
 
-/* index: of a band, counted through all planes. */
-static void render_part(void *context, int index)
+/* index: of a band, counted through all parts of all planes. */
+static void render_band_of(void *context, int index)
 {
     const FrameJob *job = context;
     const PlaneJob *plane = job->plane;
@@ -278,51 +278,65 @@ static void share_rows(PlaneJob *job)
 {
     const int rows = job->part.bottom - job->part.top;
     job->band_rows = clamp((rows + 7) / 8, FEWEST_ROWS, BAND_ROWS);
-    job->bands = rows > 0 ? (rows + job->band_rows - 1) / job->band_rows : 0;
+    job->bands = rows > 0 && job->part.right > job->part.left ? (rows + job->band_rows - 1) / job->band_rows : 0;
 }
 
-static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const L1L2WarpRect *part, const uint8_t *const src[4],
-                          const ptrdiff_t src_stride[4], uint8_t *const dst[4], const ptrdiff_t dst_stride[4])
+static PlaneJob plane_job(const L1L2Warp *w, int plane, const L1L2WarpMap *map)
+{
+    const PlaneLayout *layout = &w->plane[plane];
+    PlaneJob job = {
+        .layout = layout,
+        .generators = &w->generators,
+        .kernel = &w->kernel,
+        .affine = l1l2_warp_affine(&map->affine, &layout->dst_grid, &layout->src_grid),
+        .mesh = {map->mesh, layout->dst_grid, layout->src_grid},
+    };
+    if (!map->mesh)
+        find_step(&job);
+    return job;
+}
+
+static void render_planes(L1L2Warp *w, const L1L2WarpMap *map, const L1L2WarpParts *parts,
+                          const uint8_t *const src[4], const ptrdiff_t src_stride[4], uint8_t *const dst[4],
+                          const ptrdiff_t dst_stride[4])
 {
     const L1L2FormatInfo *format = w->cfg.format;
     FrameJob job;
     int bands = 0;
     for (int i = 0; i < format->planes; i++) {
         const PlaneLayout *layout = &w->plane[i];
-        job.plane[i] = (PlaneJob){
-            .layout = layout,
-            .generators = &w->generators,
-            .kernel = &w->kernel,
-            .affine = l1l2_warp_affine(&map->affine, &layout->dst_grid, &layout->src_grid),
-            .mesh = {map->mesh, layout->dst_grid, layout->src_grid},
-            .src = {src[i], src_stride[i], layout->src_width, layout->src_height, format->depth, format->shift},
-            .dst = dst[i],
-            .dst_stride = dst_stride[i],
-            .part = l1l2_warp_rect_samples(part, format->plane[i].log2_sub_x, format->plane[i].log2_sub_y),
-        };
-        share_rows(&job.plane[i]);
-        if (!map->mesh)
-            find_step(&job.plane[i]);
-        bands += job.plane[i].bands;
+        PlaneJob plane = plane_job(w, i, map);
+        plane.src = (L1L2WarpPlane){src[i], src_stride[i], layout->src_width, layout->src_height, format->depth,
+                                    format->shift};
+        plane.dst = dst[i];
+        plane.dst_stride = dst_stride[i];
+        for (int k = 0; k < parts->count; k++) {
+            plane.part = l1l2_warp_rect_samples(&parts->rect[k], format->plane[i].log2_sub_x,
+                                                format->plane[i].log2_sub_y);
+            share_rows(&plane);
+            job.plane[i * parts->count + k] = plane;
+            bands += plane.bands;
+        }
     }
-    l1l2_pool_run(w->cfg.pool, bands, render_part, &job);
+    l1l2_pool_run(w->cfg.pool, bands, render_band_of, &job);
 }
 
-void l1l2_warp_render_part(L1L2Warp *w, const L1L2WarpMap *map, const L1L2WarpRect *part, const uint8_t *const src[4],
-                           const ptrdiff_t src_stride[4], uint8_t *const dst[4], const ptrdiff_t dst_stride[4])
+void l1l2_warp_render_parts(L1L2Warp *w, const L1L2WarpMap *map, const L1L2WarpParts *parts,
+                            const uint8_t *const src[4], const ptrdiff_t src_stride[4], uint8_t *const dst[4],
+                            const ptrdiff_t dst_stride[4])
 {
     if (!w->packed) {
-        render_planes(w, map, part, src, src_stride, dst, dst_stride);
+        render_planes(w, map, parts, src, src_stride, dst, dst_stride);
         return;
     }
     l1l2_warp_packed422_split(w->cfg.pool, w->packed, src[0], src_stride[0], &w->in);
-    render_planes(w, map, part, (const uint8_t *const *)w->in.data, w->in.stride, w->out.data, w->out.stride);
+    render_planes(w, map, parts, (const uint8_t *const *)w->in.data, w->in.stride, w->out.data, w->out.stride);
     l1l2_warp_packed422_merge(w->cfg.pool, w->packed, &w->out, dst[0], dst_stride[0]);
 }
 
 void l1l2_warp_render(L1L2Warp *w, const L1L2WarpMap *map, const uint8_t *const src[4], const ptrdiff_t src_stride[4],
                       uint8_t *const dst[4], const ptrdiff_t dst_stride[4])
 {
-    const L1L2WarpRect all = {0, 0, w->cfg.out_width, w->cfg.out_height};
-    l1l2_warp_render_part(w, map, &all, src, src_stride, dst, dst_stride);
+    const L1L2WarpParts all = {1, {{0, 0, w->cfg.out_width, w->cfg.out_height}}};
+    l1l2_warp_render_parts(w, map, &all, src, src_stride, dst, dst_stride);
 }

@@ -57,10 +57,18 @@ typedef struct L1L2WarpRect {
 /* The samples of a plane that cover these pixels. */
 L1L2WarpRect l1l2_warp_rect_samples(const L1L2WarpRect *pixels, int log2_sub_x, int log2_sub_y);
 
-/* The same for a part of the output, in pixels within it. dst is the whole frame; what lies outside the part is left as
- * it is, but for packed 4:2:2, where it is undefined. */
-void l1l2_warp_render_part(L1L2Warp *w, const L1L2WarpMap *map, const L1L2WarpRect *part, const uint8_t *const src[4],
-                           const ptrdiff_t src_stride[4], uint8_t *const dst[4], const ptrdiff_t dst_stride[4]);
+/* Parts of the output, in pixels within it, which do not overlap. */
+enum { L1L2_WARP_MAX_PARTS = 4 };
+typedef struct L1L2WarpParts {
+    int count;
+    L1L2WarpRect rect[L1L2_WARP_MAX_PARTS]; /* some may be empty */
+} L1L2WarpParts;
+
+/* The same for parts of the output. dst is the whole frame; what lies outside the parts is left as it is, but for
+ * packed 4:2:2, where it is undefined. */
+void l1l2_warp_render_parts(L1L2Warp *w, const L1L2WarpMap *map, const L1L2WarpParts *parts,
+                            const uint8_t *const src[4], const ptrdiff_t src_stride[4], uint8_t *const dst[4],
+                            const ptrdiff_t dst_stride[4]);
 
 /* The instruction set of the inner loops on this processor: "avx2", or "none" for plain C. */
 const char *l1l2_warp_simd(void);

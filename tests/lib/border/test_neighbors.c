@@ -11,7 +11,7 @@ static const double missing_px = 20.0;
 static L1L2BorderNeed need_of(const L1L2Mat *map)
 {
     return (L1L2BorderNeed){.t = 100, .map = map, .width = WIDTH, .height = HEIGHT,
-                            .strips = {{{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 40, HEIGHT}, {0, 0, 0, 0}}}};
+                            .strips = {4, {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 40, HEIGHT}, {0, 0, 0, 0}}}};
 }
 
 /* A neighbor whose frame lies `left` pixels farther left. */

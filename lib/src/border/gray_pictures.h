@@ -11,8 +11,8 @@
 
 #include "image/area_scale.h"
 
-/* The longer side of a picture, pixels. On ten real clips 320 lost 0.1 to 0.3 dB of the filled picture, and 640 gained
- * less than 0.1. */
+/* The longer side of a picture, pixels. Mean PSNR of what is filled, twelve real clips (tests/bench/bench_border): 320:
+ * 31.7 dB, 480: 32.1, 640: 32.2, for 1.8 times the pixels. */
 enum { L1L2_BORDER_GRAY_SIDE = 480 };
 
 typedef struct L1L2BorderGray {

@@ -8,8 +8,7 @@ root=$(realpath -m "${1:?usage: packaging/new-root.sh DIRECTORY [SUITE]}")
 suite=${2:-bookworm}
 
 as_root() { if [[ $(id -u) -eq 0 ]]; then "$@"; else sudo "$@"; fi; }
-mirror=$(find /etc/apt/sources.list /etc/apt/sources.list.d \( -name '*.sources' -o -name '*.list' \) 2>/dev/null |
-  xargs -r cat | grep -v '^ *#' | grep -oE '[a-z+]+:/[^ ]*/debian/?( |$)' | head -n 1 | tr -d ' ' || true)
+mirror=$("$(dirname "${BASH_SOURCE[0]}")/../.ci/debian-mirror.sh")
 
 command -v debootstrap >/dev/null || as_root env DEBIAN_FRONTEND=noninteractive \
   apt-get -q -y -o DPkg::Lock::Timeout=300 --no-install-recommends install debootstrap >/dev/null

@@ -42,24 +42,6 @@ die() {
   exit 1
 }
 
-# Debian's mirror that this system uses.
-mirror() {
-  find /etc/apt/sources.list /etc/apt/sources.list.d -name '*.sources' -o -name '*.list' 2>/dev/null | sort |
-    xargs -r cat | grep -v '^ *#' | grep -oE '[a-z+]+:/[^ ]*/debian/?( |$)' | head -n 1 || true
-}
-
-apt_source() {
-  local folder=$home/apt keyring=/usr/share/keyrings/debian-archive-keyring.gpg mirror
-  mirror=$(mirror)
-  [[ -n $mirror && -f $keyring ]] || return 1
-  mkdir -p "$folder/lists/partial" "$folder/archives/partial"
-  echo "deb-src [signed-by=$keyring] $mirror $suite main" >"$folder/sources.list"
-  local apt=(apt-get -q -y -o Dir::Etc::SourceList="$folder/sources.list" -o Dir::Etc::SourceParts=-
-    -o Dir::State::Lists="$folder/lists" -o Dir::Cache="$folder" -o Dir::Cache::Archives="$folder/archives"
-    -o APT::Sandbox::User=root -o APT::Update::Error-Mode=any -o Acquire::Retries=2)
-  "${apt[@]}" update && (cd "$1" && "${apt[@]}" source opencv)
-}
-
 get_tools() {
   [[ ! -f $tools/complete ]] || return 0
   say "installing the tools: meson-python, auditwheel and others"
@@ -77,7 +59,7 @@ fetch_opencv() {
   command -v dpkg-source >/dev/null || skip "dpkg-source is not installed (package dpkg-dev)"
   rm -rf "$home/fetched"
   mkdir -p "$home/fetched"
-  apt_source "$home/fetched" >"$log" 2>&1 ||
+  "$top/.ci/apt-source.sh" opencv "$suite" "$home/apt" "$home/fetched" >"$log" 2>&1 ||
     skip "the source of OpenCV cannot be had: $(grep -m 1 '^[EW]: ' "$log" || echo "see $log")"
   mv "$home/fetched"/opencv-*/ "$home/tree"
   rm -rf "$home/fetched" "$home/apt"

@@ -55,24 +55,6 @@ if [[ $flavor == vidstab ]]; then
 fi
 command -v nasm >/dev/null || options+=(--disable-x86asm)
 
-# Debian's mirror that this system uses.
-mirror() {
-  find /etc/apt/sources.list /etc/apt/sources.list.d -name '*.sources' -o -name '*.list' 2>/dev/null | sort |
-    xargs -r cat | grep -v '^ *#' | grep -oE '[a-z+]+:/[^ ]*/debian/?( |$)' | head -n 1 || true
-}
-
-apt_source() {
-  local folder=$home/apt keyring=/usr/share/keyrings/debian-archive-keyring.gpg mirror
-  mirror=$(mirror)
-  [[ -n $mirror && -f $keyring ]] || return 1
-  mkdir -p "$folder/lists/partial" "$folder/archives/partial"
-  echo "deb-src [signed-by=$keyring] $mirror $suite main" >"$folder/sources.list"
-  local apt=(apt-get -q -y -o Dir::Etc::SourceList="$folder/sources.list" -o Dir::Etc::SourceParts=-
-    -o Dir::State::Lists="$folder/lists" -o Dir::Cache="$folder" -o Dir::Cache::Archives="$folder/archives"
-    -o APT::Sandbox::User=root -o APT::Update::Error-Mode=any -o Acquire::Retries=2)
-  "${apt[@]}" update && (cd "$1" && "${apt[@]}" source ffmpeg)
-}
-
 fetch() {
   local fetched=$home/fetched
   [[ ! -d $tree ]] || return 0
@@ -80,7 +62,7 @@ fetch() {
   say "fetching the source of FFmpeg $version"
   rm -rf "$fetched"
   mkdir -p "$fetched"
-  apt_source "$fetched" >"$log" 2>&1 ||
+  "$top/.ci/apt-source.sh" ffmpeg "$suite" "$home/apt" "$fetched" >"$log" 2>&1 ||
     skip "the source of FFmpeg $version cannot be had: $(grep -m 1 '^[EW]: ' "$log" || echo "see $log")"
   mv "$fetched"/ffmpeg-"$version"*/ "$tree"
   rm -rf "$fetched" "$home/apt"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Fetches and unpacks a source package of Debian, with lists of apt of its own: the system's sources need no deb-src line
-# and are not changed. Fails if there is no mirror or the package cannot be had. Needs dpkg-dev.
+# Fetches and unpacks a source package of Debian, with lists of apt of its own: the system needs no deb-src line
+# and is not changed. Fails if there is no mirror or the package cannot be had. Needs dpkg-dev.
 # usage: .ci/apt-source.sh PACKAGE SUITE LISTS_DIR OUT_DIR      (LISTS_DIR is made and can be used again)
 set -euo pipefail
 

@@ -9,44 +9,35 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import unittest
 from pathlib import Path
 
+import case
 import kinds
 import probe
+from case import L1L2STAB
 
-L1L2STAB = os.path.abspath(sys.argv[1])
 SLOW = ('--interpolation=lanczos', '--window=20', '--overlap=19')
 
 
-class Case(unittest.TestCase):
-    """A folder of its own for each test, with what is made once for all."""
+class Case(case.FolderEach):
+    """Each test has a clip, and an empty folder `out` for outputs."""
+    timeout = 100
 
     @classmethod
     def setUpClass(cls):
-        cls.holder = tempfile.TemporaryDirectory()
-        cls.stock = Path(cls.holder.name)
+        super().setUpClass()
         cls.clip = cls.stock / 'clip.mp4'
         kinds.simple(*kinds.H264, *kinds.AAC)(cls.clip)
 
-    @classmethod
-    def tearDownClass(cls):
-        cls.holder.cleanup()
-
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.path = Path(self.folder.name)
+        super().setUp()
         self.out = self.path / 'out'
         self.out.mkdir()
 
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def run_command(self, *arguments, **options):
-        return subprocess.run([L1L2STAB, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=100,
-                              cwd=self.path, errors='surrogateescape', encoding='utf-8', **options)
+    def run_command(self, *arguments, code=None, **options):
+        return super().run_command(*arguments, code=code, **options)
 
     def refuses(self, code, words, *arguments, **options):
         """It ends with this exit code, one line with these words, and no file in out."""

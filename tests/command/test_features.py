@@ -12,42 +12,25 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 from pathlib import Path
 
+import case
 import kinds
 import probe
+from case import L1L2STAB
 
-L1L2STAB, SOURCE = os.path.abspath(sys.argv[1]), Path(sys.argv[2]) / 'samples/l1l2stab'
+SOURCE = Path(sys.argv[2]) / 'samples/l1l2stab'
 
 
-class Case(unittest.TestCase):
+class Case(case.FolderEach):
     @classmethod
     def setUpClass(cls):
-        cls.holder = tempfile.TemporaryDirectory()
-        cls.stock = Path(cls.holder.name)
+        super().setUpClass()
         cls.clip = cls.stock / 'clip.mp4'
         kinds.ffmpeg(*kinds.video(seconds=3), *kinds.tone(seconds=3), *kinds.H264, '-g', '20', '-bf', '2',
                      *kinds.AAC, cls.clip)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.holder.cleanup()
-
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.path = Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def run_command(self, *arguments, code=0):
-        run = subprocess.run([L1L2STAB, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=200,
-                             cwd=self.path, encoding='utf-8')
-        self.assertEqual(run.returncode, code, run.stderr)
-        return run
 
     def picture(self, path, number=0):
         """A frame as rows of gray pixels."""

@@ -5,17 +5,17 @@
 test_kinds.py L1L2STAB [KIND...]
 test_kinds.py L1L2STAB --table      prints the table of docs/command.md
 """
-import os
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
+import case
 import kinds
 import probe
+from case import L1L2STAB
 
-L1L2STAB = os.path.abspath(sys.argv[1])
 
 
 def stabilize(kind, folder):
@@ -39,17 +39,8 @@ def print_table():
             print(f'| {kind.name} | {was.summary()} | {is_now.summary()} | {frames} | {"; ".join(lost)} |', flush=True)
 
 
-class Kinds(unittest.TestCase):
+class Kinds(case.OneFolder):
     """One test for each kind, added below."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.path = Path(cls.folder.name)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
 
     def check(self, kind):
         before, after, run = stabilize(kind, self.path)

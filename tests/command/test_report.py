@@ -16,9 +16,10 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import case
 import kinds
+from case import L1L2STAB
 
-L1L2STAB = os.path.abspath(sys.argv[1])
 CHROMIUM = shutil.which('chromium')
 SKIP = 77  # for meson
 PHONE, DESKTOP = 390, 1280  # pixels
@@ -81,22 +82,7 @@ box.setPointerCapture = () => {};
 '''
 
 
-class Case(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.holder = tempfile.TemporaryDirectory()
-        cls.path = Path(cls.holder.name)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.holder.cleanup()
-
-    def run_command(self, *arguments, code=0):
-        run = subprocess.run([L1L2STAB, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=200,
-                             cwd=self.path, encoding='utf-8')
-        self.assertEqual(run.returncode, code, run.stderr)
-        return run
-
+class Case(case.OneFolder):
     def report(self, clip, output):
         """Stabilizes a clip and returns the report's data, the rows of its table, and its page."""
         self.run_command(clip, '-o', output, '--report', 'report')

@@ -159,6 +159,18 @@ static const struct
   {0, 64, 1000},
 };
 
+/* The buffer is taken, and the stream ends with an error. */
+static void
+push_refused (GstHarness * h, GstBuffer * buffer)
+{
+  GstMessage *message;
+
+  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_ERROR);
+  message = stab_harness_message (h, GST_MESSAGE_ERROR);
+  fail_unless (message != NULL);
+  gst_message_unref (message);
+}
+
 GST_START_TEST (a_meta_that_reaches_beyond_the_memory_is_an_error)
 {
   GstHarness *h = stab_harness_new ("video/x-raw, format=GRAY8, width=64, "
@@ -167,7 +179,6 @@ GST_START_TEST (a_meta_that_reaches_beyond_the_memory_is_an_error)
   gsize offset[GST_VIDEO_MAX_PLANES] = { false_metas[__i__].offset };
   gint stride[GST_VIDEO_MAX_PLANES] = { false_metas[__i__].stride };
   const gsize first_size = false_metas[__i__].first_memory;
-  GstMessage *message;
 
   gst_buffer_append_memory (buffer, gst_allocator_alloc (NULL, first_size, NULL));
   if (first_size < 3072)
@@ -176,10 +187,7 @@ GST_START_TEST (a_meta_that_reaches_beyond_the_memory_is_an_error)
   gst_buffer_memset (buffer, 0, 0, 3072);
   gst_buffer_add_video_meta_full (buffer, GST_VIDEO_FRAME_FLAG_NONE,
       GST_VIDEO_FORMAT_GRAY8, 64, 48, 1, offset, stride);
-  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_ERROR);
-  message = stab_harness_message (h, GST_MESSAGE_ERROR);
-  fail_unless (message != NULL);
-  gst_message_unref (message);
+  push_refused (h, buffer);
   stab_harness_free (h);
 }
 
@@ -191,15 +199,11 @@ GST_START_TEST (a_meta_for_other_frames_than_those_of_the_caps_is_an_error)
   GstHarness *h = stab_harness_new ("video/x-raw, format=GRAY8, width=64, "
       "height=48, framerate=25/1", "window", WINDOW, NULL);
   GstBuffer *buffer = gst_buffer_new_allocate (NULL, 3072, NULL);
-  GstMessage *message;
 
   gst_buffer_add_video_meta (buffer, GST_VIDEO_FRAME_FLAG_NONE,
       __i__ == 0 ? GST_VIDEO_FORMAT_I420 : GST_VIDEO_FORMAT_GRAY8,
       __i__ == 1 ? 63 : 64, __i__ == 2 ? 47 : 48);
-  fail_unless_equals_int (gst_harness_push (h, buffer), GST_FLOW_ERROR);
-  message = stab_harness_message (h, GST_MESSAGE_ERROR);
-  fail_unless (message != NULL);
-  gst_message_unref (message);
+  push_refused (h, buffer);
   stab_harness_free (h);
 }
 

@@ -161,6 +161,13 @@ static L1L2Mat mat_of(const double m[9])
     return mat;
 }
 
+/* How far outside the source a map takes the i-th pixel of the output; negative inside. */
+static double beyond_source(const L1L2Mat *map, int i)
+{
+    const L1L2Point at = l1l2_mat_apply(map, (L1L2Point){i % WIDTH + 0.5 - 0.5 * WIDTH, i / WIDTH + 0.5 - 0.5 * HEIGHT});
+    return fmax(fabs(at.x) - 0.5 * WIDTH, fabs(at.y) - 0.5 * HEIGHT);
+}
+
 START_TEST(a_filled_border_shows_what_the_camera_would_have_seen)
 {
     Synth *scene = shaky_scene(5.0);
@@ -213,9 +220,7 @@ START_TEST(the_inside_is_what_the_warp_alone_renders)
         const ptrdiff_t stride[4] = {WIDTH};
         l1l2_warp_render(warp, &map, (const uint8_t *const *)film->in[t].data, film->in[t].stride, dst, stride);
         for (int i = 0; i < PIXELS; i++) {
-            const L1L2Point out = {i % WIDTH + 0.5 - 0.5 * WIDTH, i / WIDTH + 0.5 - 0.5 * HEIGHT};
-            const L1L2Point at = l1l2_mat_apply(&map.affine, out);
-            if (fabs(at.x) > 0.5 * WIDTH - seam || fabs(at.y) > 0.5 * HEIGHT - seam)
+            if (beyond_source(&map.affine, i) > -seam)
                 continue;
             ck_assert_int_eq(film->out[t].data[0][i], alone[i]);
             ck_assert_int_eq(film->map[t][i], 0);
@@ -243,9 +248,7 @@ START_TEST(the_map_and_the_shares_tell_who_gave_each_pixel)
         long filled = 0, extended = 0;
         for (int i = 0; i < PIXELS; i++) {
             const int provider = film->map[t][i], from = t + provider - 128;
-            const L1L2Point out = {i % WIDTH + 0.5 - 0.5 * WIDTH, i / WIDTH + 0.5 - 0.5 * HEIGHT};
-            const L1L2Point at = l1l2_mat_apply(&map, out);
-            const double beyond = fmax(fabs(at.x) - 0.5 * WIDTH, fabs(at.y) - 0.5 * HEIGHT);
+            const double beyond = beyond_source(&map, i);
             if (provider == 0)
                 ck_assert_double_le(beyond, 0.01);
             else if (provider == 255)

@@ -164,7 +164,8 @@ static L1L2Mat mat_of(const double m[9])
 /* How far outside the source a map takes the i-th pixel of the output; negative inside. */
 static double beyond_source(const L1L2Mat *map, int i)
 {
-    const L1L2Point at = l1l2_mat_apply(map, (L1L2Point){i % WIDTH + 0.5 - 0.5 * WIDTH, i / WIDTH + 0.5 - 0.5 * HEIGHT});
+    const L1L2Point out = {i % WIDTH + 0.5 - 0.5 * WIDTH, i / WIDTH + 0.5 - 0.5 * HEIGHT};
+    const L1L2Point at = l1l2_mat_apply(map, out);
     return fmax(fabs(at.x) - 0.5 * WIDTH, fabs(at.y) - 0.5 * HEIGHT);
 }
 

@@ -8,6 +8,7 @@
 
 #include "checkx.h"
 #include "common/geom.h"
+#include "common/rng.h"
 #include "image/format.h"
 #include "synth.h"
 #include "warp/warp.h"
@@ -232,6 +233,27 @@ START_TEST(the_inside_is_what_the_warp_alone_renders)
     l1l2_warp_free(warp);
     free(alone);
     synth_free(scene);
+    free_film(film);
+}
+END_TEST
+
+/* No frame has anything in common with another. Even so, what was filmed there is shown, not the mirrored frame. */
+START_TEST(neighbors_that_do_not_match_are_shown_rather_than_an_extension)
+{
+    Film *film = new_film(L1L2STAB_FORMAT_GRAY8, L1L2STAB_BORDER_FILL);
+    L1L2Rng rng = l1l2_rng_seeded(5);
+    double filled = 0.0, extended = 0.0;
+    for (int t = 0; t < FRAMES; t++)
+        for (int i = 0; i < PIXELS; i++)
+            film->in[t].data[0][i] = (uint8_t)(l1l2_rng_next(&rng) >> 24);
+    give_shake(film);
+    run(film);
+    for (int t = 0; t < FRAMES; t++) {
+        filled += film->info[t].filled;
+        extended += film->info[t].extended;
+    }
+    ck_assert_double_gt(filled / FRAMES, 0.01);
+    ck_assert_double_lt(extended, 0.1 * filled);
     free_film(film);
 }
 END_TEST
@@ -479,6 +501,7 @@ int main(void)
     tcase_set_timeout(tcase, 60);
     tcase_add_test(tcase, a_filled_border_shows_what_the_camera_would_have_seen);
     tcase_add_test(tcase, the_inside_is_what_the_warp_alone_renders);
+    tcase_add_test(tcase, neighbors_that_do_not_match_are_shown_rather_than_an_extension);
     tcase_add_test(tcase, the_map_and_the_shares_tell_who_gave_each_pixel);
     tcase_add_loop_test(tcase, the_bytes_do_not_depend_on_the_number_of_threads, 0,
                         (int)(sizeof some_formats / sizeof *some_formats));

@@ -17,8 +17,10 @@ static const double offset_band = 3.0;
 static const double offset_prior = 1.0;
 /* Larger differences, in parts of the range, are not of light but of things. */
 static const double largest_offset = 0.12;
-/* A source that has this weight is better than an extension. */
+/* Sources that cover a sample by this weight are better than an extension. */
 static const float least_weight = 0.1f;
+/* Where sources agree with the frame by this weight, one that does not agree hardly shows. */
+static const float doubt_weight = 0.1f;
 /* The outermost pixel of a frame is often darker, or black. */
 static const double rim_px = 1.0;
 
@@ -270,6 +272,10 @@ typedef struct Blend {
     float rest;                          /* what they have left */
     float most;                          /* the largest weight of them */
     int provider;                        /* whose weight it is */
+    struct {                             /* the same as if all sources agreed with the frame */
+        float value[L1L2_BORDER_COMPONENTS], rest;
+        int provider;                    /* the nearest one */
+    } trusting;
 } Blend;
 
 /* Adds a source that has `weight` at a sample. */
@@ -283,24 +289,34 @@ static void add_source(const Row *row, int index, int sample, float weight, Blen
     const int node = (int)at;
     const float part = at - (float)node, *agreement = row->agreement[index] + node;
     const uint8_t *picture = source->data[plane->index] + row->v * source->stride[plane->index];
+    const float trusting = weight * blend->trusting.rest;
     weight *= blend->rest * (agreement[0] + part * (agreement[1] - agreement[0]));
     for (int k = 0; k < plane->components; k++) {
         const float *offset = row->offset[index][k] + node, add = offset[0] + part * (offset[1] - offset[0]);
-        blend->value[k] += weight * ((float)read_component(plane, picture, sample, k) + add);
+        const float value = (float)read_component(plane, picture, sample, k) + add;
+        blend->value[k] += weight * value;
+        blend->trusting.value[k] += trusting * value;
     }
     blend->rest -= weight;
+    if (blend->trusting.rest == 1.0f)
+        blend->trusting.provider = L1L2_BORDER_NEIGHBOR + source->distance;
+    blend->trusting.rest -= trusting;
     if (weight > blend->most) {
         blend->most = weight;
         blend->provider = L1L2_BORDER_NEIGHBOR + source->distance;
     }
 }
 
-/* Outside the frame, the sources share what they left, if they have a good part; otherwise it is extended. */
+/* Outside the frame, the sources share what they left. Where hardly any agrees with the frame, the nearest is shown all
+ * the same: something real, if perhaps at the wrong place. Where there is none, it is extended. */
 static void fill_rest(const Plane *plane, const Positions *own, int i, Blend *blend)
 {
-    if (1.0f - blend->rest >= least_weight) {
+    const float agreed = 1.0f - blend->rest, covered = 1.0f - blend->trusting.rest, doubt = doubt_weight * blend->rest;
+    if (covered >= least_weight) {
         for (int k = 0; k < plane->components; k++)
-            blend->value[k] /= 1.0f - blend->rest;
+            blend->value[k] = (blend->value[k] + doubt * blend->trusting.value[k] / covered) / (agreed + doubt);
+        if (agreed < doubt)
+            blend->provider = blend->trusting.provider;
         return;
     }
     float extension[L1L2_BORDER_COMPONENTS];
@@ -318,7 +334,7 @@ static void paint(const Row *row, int u, int i, const Positions *own, const Posi
     const int sample = u + i;
     uint8_t *out = c->dst[plane->index] + row->v * c->dst_stride[plane->index];
     const float mine = weight_at(plane, own->depth[i]);
-    Blend blend = {.rest = 1.0f - mine, .most = mine, .provider = L1L2_BORDER_OWN};
+    Blend blend = {.rest = 1.0f - mine, .most = mine, .provider = L1L2_BORDER_OWN, .trusting = {.rest = 1.0f}};
     for (int s = 0; s < c->sources && blend.rest > 0.0f; s++)
         if (i >= row->from[s] && i < row->end[s])
             add_source(row, s, sample, weight_at(plane, other[s].depth[i - row->from[s]]), &blend);

@@ -9,7 +9,9 @@
  *     output = sum_k a_k v_k,   a_k = w_k (1 - a_0 - ... - a_{k-1}).
  *
  * So there is no hard edge, and a pixel of the frame that is farther inside than the seam is not touched. A source is
- * weighed by its agreement (registration.h) as well.
+ * weighed by its agreement (registration.h) as well. Where hardly any agrees, as with a pillar that is walked past, the
+ * sum without agreements is shown: the nearest source. It is closer to the truth than an extension is, by 19 to 24 dB
+ * on such a walk (tests/bench/bench_border), and it has no ragged edge.
  *
  * Exposure, white balance and vignetting differ from frame to frame. Beside the border, where both the frame and a
  * source are seen, their mean difference is taken around each node of the grid, for each component. The source gets the

@@ -9,19 +9,18 @@
 enum {
     LATTICE = 64,        /* points along each axis of the output */
     MARGIN_PX = 2,       /* a neighbor's outermost pixels are not relied on */
-    FAR_SOURCES = 3      /* are reserved for what the nearest neighbors do not cover */
+    MOST_NEIGHBORS = 2 * L1L2_BORDER_MAX_FRAMES + 1
 };
 
-/* A neighbor is used if it covers this part of the missing points that are not covered yet: a near one, a far one. Near
- * ones that cover little cost time and places. */
-static const double least_near_share = 0.1, least_far_share = 0.003;
+/* A neighbor is used if it brings the missing points nearer by so many frames in the mean. Each one takes time. */
+static const double least_gain = 0.3;
 /* A neighbor is rendered this far around the points that it is shown at: from point to point, and the blend. */
 static const double part_reach = 3.0;
 
 typedef struct MissingPoint {
     L1L2Point at;    /* in the frame that is filled */
     L1L2Point out;   /* in the output, pixels from its top left corner */
-    bool covered;
+    int64_t distance; /* to the frame that shows it, frames; more than any if none does */
 } MissingPoint;
 
 struct L1L2BorderMissing {
@@ -53,7 +52,7 @@ static void find_missing(L1L2BorderMissing *missing, const L1L2BorderNeed *need)
             const L1L2Point out = {(double)column / (LATTICE - 1) * width, (double)row / (LATTICE - 1) * height};
             const L1L2Point at = l1l2_mat_apply(need->map, (L1L2Point){out.x - half_w, out.y - half_h});
             if (!inside(at, half_w, half_h))
-                missing->point[missing->count++] = (MissingPoint){at, out, false};
+                missing->point[missing->count++] = (MissingPoint){at, out, L1L2_BORDER_MAX_FRAMES + 1};
         }
 }
 
@@ -62,6 +61,7 @@ typedef struct Search {
     const L1L2BorderNeed *need;
     const L1L2BorderNeighbor *neighbors;
     int count;
+    int64_t gain[MOST_NEIGHBORS]; /* of each neighbor: as it was when it was worked out last */
     L1L2BorderChoice choice;
     L1L2BorderMissing *missing;
 } Search;
@@ -78,12 +78,17 @@ static int64_t distance(const Search *search, int neighbor)
     return llabs(search->neighbors[neighbor].t - search->need->t);
 }
 
-/* How many points a neighbor would add. */
-static int gain_of(const Search *search, int neighbor)
+/* What it costs to show a point from a neighbor so far away, or to have nothing to show. */
+/* How much nearer a neighbor would bring the missing points, all together. */
+static int64_t gain_of(const Search *search, int neighbor)
 {
-    int gain = 0;
-    for (int i = 0; i < search->missing->count; i++)
-        gain += !search->missing->point[i].covered && covers(search, neighbor, &search->missing->point[i]);
+    const int64_t away = distance(search, neighbor);
+    int64_t gain = 0;
+    for (int i = 0; i < search->missing->count; i++) {
+        const MissingPoint *point = &search->missing->point[i];
+        if (point->distance > away && covers(search, neighbor, point))
+            gain += point->distance - away;
+    }
     return gain;
 }
 
@@ -91,51 +96,43 @@ static int gain_of(const Search *search, int neighbor)
 static void choose(Search *search, int neighbor)
 {
     L1L2BorderChoice *choice = &search->choice;
+    const int64_t away = distance(search, neighbor);
     int place = choice->count++;
-    for (; place > 0 && distance(search, choice->neighbor[place - 1]) > distance(search, neighbor); place--)
+    for (; place > 0 && distance(search, choice->neighbor[place - 1]) > away; place--)
         choice->neighbor[place] = choice->neighbor[place - 1];
     choice->neighbor[place] = neighbor;
     for (int i = 0; i < search->missing->count; i++) {
         MissingPoint *point = &search->missing->point[i];
-        point->covered = point->covered || covers(search, neighbor, point);
+        if (point->distance > away && covers(search, neighbor, point))
+            point->distance = away;
     }
 }
 
-/* The nearest neighbors that are of use. Of two that are as far, the one that adds more comes first. */
-static void choose_near(Search *search)
+static int best_of(const Search *search)
 {
-    const double least = fmax(least_near_share * search->missing->count, 1.0);
-    for (int64_t d = 1; d <= L1L2_BORDER_MAX_FRAMES; d++) {
-        int at[2] = {-1, -1}, gain[2] = {0, 0}, found = 0;
-        for (int k = 0; k < search->count && found < 2; k++)
-            if (distance(search, k) == d)
-                at[found++] = k;
-        for (int i = 0; i < found; i++)
-            gain[i] = gain_of(search, at[i]);
-        const int first = gain[1] > gain[0];
-        for (int i = 0; i < found && search->choice.count < L1L2_BORDER_MAX_SOURCES - FAR_SOURCES; i++) {
-            const int k = at[i == 0 ? first : !first];
-            if (k >= 0 && gain_of(search, k) >= least)
-                choose(search, k);
-        }
-    }
+    int best = 0;
+    for (int k = 1; k < search->count; k++)
+        if (search->gain[k] > search->gain[best])
+            best = k;
+    return best;
 }
 
-/* Those that cover most of the rest. */
-static void choose_far(Search *search)
+/* One neighbor after the other, each time the one that gains most. A gain only falls while others are chosen. So a
+ * neighbor whose gain is still the largest after it was worked out again is the best one. */
+static void choose_all(Search *search)
 {
-    while (search->choice.count < L1L2_BORDER_MAX_SOURCES) {
-        int best = -1, most = (int)fmax(least_far_share * search->missing->count, 1.0) - 1;
-        for (int k = 0; k < search->count; k++) {
-            const int gain = gain_of(search, k);
-            if (gain > most) {
-                best = k;
-                most = gain;
-            }
-        }
-        if (best < 0)
+    const double least = fmax(least_gain * search->missing->count, 1.0);
+    for (int k = 0; k < search->count; k++)
+        search->gain[k] = gain_of(search, k);
+    while (search->count > 0 && search->choice.count < L1L2_BORDER_MAX_SOURCES) {
+        const int best = best_of(search);
+        if ((double)search->gain[best] < least)
             return;
+        search->gain[best] = gain_of(search, best);
+        if (best_of(search) != best || (double)search->gain[best] < least)
+            continue;
         choose(search, best);
+        search->gain[best] = 0;
     }
 }
 
@@ -190,8 +187,7 @@ L1L2BorderChoice l1l2_border_choose(L1L2BorderMissing *missing, const L1L2Border
 {
     Search search = {.need = need, .neighbors = neighbors, .count = count, .missing = missing};
     find_missing(missing, need);
-    choose_near(&search);
-    choose_far(&search);
+    choose_all(&search);
     share_out(&search);
     return search.choice;
 }

@@ -4,8 +4,10 @@
  *
  * The choice is by geometry alone. The parts of the output that the frame itself does not show are sampled by a lattice
  * of points. A neighbor covers a point if the chained motions take it inside the neighbor's frame. What was seen long
- * ago was seen from elsewhere. So near frames come first: each is used if it covers a good part of what is missing.
- * Then come those that cover most of the rest. Where several cover a point, the nearest one is shown. Each neighbor has
+ * ago was seen from elsewhere, and chained motions drift. So a point costs as many frames as the nearest chosen
+ * neighbor that covers it is away, and more than any distance if none does. Neighbors are chosen one after the other,
+ * each time the one with which the sum of the costs falls most. It is the greedy way to place facilities (Nemhauser,
+ * Wolsey and Fisher, "An analysis of approximations for maximizing submodular set functions", 1978). Each neighbor has
  * to be rendered only around the points that it is shown at.
  *
  * The choice has no memory, so rendering can start at any frame. A penalty for changing the source from frame to frame

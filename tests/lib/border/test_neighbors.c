@@ -52,6 +52,23 @@ START_TEST(near_neighbors_come_first_and_far_ones_show_the_rest)
 }
 END_TEST
 
+/* The left 100 columns are missing. The nearest five show more and more of them. Of what is left, frame 72 shows all,
+ * and frame 88, which has drifted much less, all but some columns. */
+START_TEST(what_near_neighbors_leave_is_shown_by_the_next_ones)
+{
+    const L1L2Mat map = l1l2_mat_translation(-100.0, 0.0);
+    const L1L2BorderNeed need = need_of(&map);
+    const L1L2BorderNeighbor neighbors[] = {neighbor(72, 120.0), neighbor(88, 96.5), neighbor(95, 64.5),
+                                            neighbor(96, 52.0), neighbor(97, 39.0), neighbor(98, 26.5),
+                                            neighbor(99, 14.0)};
+    const L1L2BorderChoice choice = choose(&need, neighbors, 7);
+    bool chosen = false;
+    for (int i = 0; i < choice.count; i++)
+        chosen = chosen || choice.neighbor[i] == 1;
+    ck_assert(chosen);
+}
+END_TEST
+
 START_TEST(a_source_is_rendered_around_what_it_shows_and_only_in_strips)
 {
     const L1L2Mat map = l1l2_mat_translation(-missing_px, 0.0);
@@ -99,6 +116,7 @@ int main(void)
     TCase *tcase = tcase_create("neighbors");
     tcase_add_test(tcase, the_nearest_neighbor_that_shows_all_is_the_only_source);
     tcase_add_test(tcase, near_neighbors_come_first_and_far_ones_show_the_rest);
+    tcase_add_test(tcase, what_near_neighbors_leave_is_shown_by_the_next_ones);
     tcase_add_test(tcase, a_source_is_rendered_around_what_it_shows_and_only_in_strips);
     tcase_add_test(tcase, what_no_neighbor_shows_stays_without_a_source);
     tcase_add_test(tcase, the_number_of_sources_is_bounded);

@@ -1,13 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "neighbors_of.h"
 
-/* Whether the motion from frame t to the frame before it is known. */
-static bool is_linked(const L1L2QueuedFrame *record)
-{
-    return record->path.path_index > 0 && record->source != L1L2STAB_MOTION_SOURCE_IDENTITY &&
-           record->source != L1L2STAB_MOTION_SOURCE_PREDICTED;
-}
-
 static int add(const L1L2FrameQueue *queue, int64_t t, const L1L2Mat *chain, const L1L2Geometry *geometry,
                L1L2BorderNeighbor *neighbor)
 {
@@ -32,7 +25,7 @@ int l1l2_neighbors_of_oldest(const L1L2FrameQueue *queue, int reach, int64_t kno
     L1L2Mat chain = l1l2_mat_identity(), inverse;
     for (int64_t k = t - 1; k >= queue->kept && k >= t - reach; k--) {
         const L1L2QueuedFrame *later = l1l2_frame_queue_at(queue, k + 1);
-        if (!is_linked(later))
+        if (!later->path.linked)
             break;
         chain = l1l2_mat_mul(later->path.F, chain);
         count += add(queue, k, &chain, geometry, &neighbors[count]);
@@ -40,7 +33,7 @@ int l1l2_neighbors_of_oldest(const L1L2FrameQueue *queue, int reach, int64_t kno
     chain = l1l2_mat_identity();
     for (int64_t k = t + 1; k < known_end && k <= t + reach; k++) {
         const L1L2QueuedFrame *record = l1l2_frame_queue_at(queue, k);
-        if (!is_linked(record) || !l1l2_mat_inverse(record->path.F, &inverse))
+        if (!record->path.linked || !l1l2_mat_inverse(record->path.F, &inverse))
             break;
         chain = l1l2_mat_mul(inverse, chain);
         count += add(queue, k, &chain, geometry, &neighbors[count]);

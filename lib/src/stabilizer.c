@@ -113,6 +113,8 @@ static L1L2StabResult build(L1L2Stab *s)
         .model = cfg->motion_model,
         .solver = cfg->solver,
         .weights = {cfg->weights[0], cfg->weights[1], cfg->weights[2]},
+        .fill_reach = reach_of(cfg),
+        .fill_margin = L1L2_BORDER_MARGIN_PX / s->diagonal_px,
         .log = &cfg->logger,
         .frames = l1l2_frame_queue_path_frames(&s->queue),
     };
@@ -260,6 +262,7 @@ static void extend_path(L1L2Stab *s, const L1L2MotionResult *motion, const doubl
     const L1L2PathInput input = {
         .F = &F,
         .starts_path = motion->model == L1L2STAB_MOTION_SOURCE_NONE,
+        .lost = motion->model == L1L2STAB_MOTION_SOURCE_IDENTITY || motion->model == L1L2STAB_MOTION_SOURCE_PREDICTED,
         .lambda = record->lambda,
         .crop_ratio = record->crop_ratio,
         .step = record->step,

@@ -96,7 +96,8 @@ static void run(const Clip *clip, int model, double ratio, Count *count)
         const L1L2MotionResult *m = &clip->motion[model][t < clip->frames ? t : 0];
         const bool starts_path = m->model == L1L2STAB_MOTION_SOURCE_NONE;
         if (t < clip->frames) {
-            l1l2_path_push(path, &(L1L2PathInput){&m->F, starts_path, 0.5, ratio, 0.0});
+            l1l2_path_push(path, &(L1L2PathInput){.F = &m->F, .starts_path = starts_path, .lambda = 0.5,
+                                                  .crop_ratio = ratio});
             l1l2_shutter_filter_push(filter, m->has_residual ? &m->residual : NULL, starts_path);
         } else {
             l1l2_path_finish(path);

@@ -186,7 +186,8 @@ static Errors run(const SynthConfig *scene, int frames, L1L2StabRollingShutter m
             synth_render_gray(synth, t, picture.data[0], picture.stride[0]);
             if (l1l2_motion_push(motion, picture.data[0], picture.stride[0], t == 0, &m) != L1L2STAB_OK)
                 exit(EXIT_FAILURE);
-            l1l2_path_push(path, &(L1L2PathInput){&m.F, t == 0, 0.5, crop_ratio, 0.0});
+            l1l2_path_push(path, &(L1L2PathInput){.F = &m.F, .starts_path = t == 0, .lambda = 0.5,
+                                                  .crop_ratio = crop_ratio});
             l1l2_shutter_filter_push(filter, m.has_residual ? &m.residual : NULL, t == 0);
         } else {
             l1l2_path_finish(path);

@@ -8,7 +8,6 @@
 
 enum {
     LATTICE = 64,        /* points along each axis of the output */
-    MARGIN_PX = 2,       /* a neighbor's outermost pixels are not relied on */
     MOST_NEIGHBORS = 2 * L1L2_BORDER_MAX_FRAMES + 1
 };
 
@@ -70,7 +69,8 @@ static bool covers(const Search *search, int neighbor, const MissingPoint *point
 {
     const double *m = search->neighbors[neighbor].map.m; /* affine */
     const L1L2Point p = point->at, at = {m[0] * p.x + m[1] * p.y + m[2], m[3] * p.x + m[4] * p.y + m[5]};
-    return inside(at, 0.5 * search->need->width - MARGIN_PX, 0.5 * search->need->height - MARGIN_PX);
+    return inside(at, 0.5 * search->need->width - L1L2_BORDER_MARGIN_PX,
+                  0.5 * search->need->height - L1L2_BORDER_MARGIN_PX);
 }
 
 static int64_t distance(const Search *search, int neighbor)

@@ -29,6 +29,7 @@ enum {
     L1L2_BORDER_MAX_FRAMES = 120, /* from the frame that is filled, either way */
     L1L2_BORDER_MAX_SOURCES = 8, /* that one frame is filled from */
     L1L2_BORDER_STRIPS = L1L2_WARP_MAX_PARTS, /* what lies outside all of them shows the frame alone */
+    L1L2_BORDER_MARGIN_PX = 2,   /* a neighbor's outermost pixels are not relied on */
     L1L2_BORDER_ALIGN = 4        /* strips begin at multiples of so many pixels: at whole samples of any plane */
 };
 

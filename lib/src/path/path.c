@@ -8,10 +8,18 @@
 #include "common/log.h"
 #include "common/mem.h"
 #include "path/constraints.h"
+#include "path/coverage.h"
 #include "path/solver.h"
 #include "path/window_schedule.h"
 
 _Static_assert(L1L2_PATH_HISTORY <= L1L2_PATH_PAST, "a window looks back on more frames than are kept");
+
+/* Where borders are filled: a path that leaves more than this part of a frame to be made up gives way. */
+static const double most_lacking = 0.01;
+/* The room that it has then, as a crop ratio, and how fast the room changes from frame to frame. */
+static const double tightest_room = 0.99, room_step = 0.005;
+/* Windows are solved again at most so often: where a path gives way at one side, it may come to lack another. */
+enum { TIGHTENINGS = 4 };
 
 struct L1L2Path {
     L1L2PathConfig cfg;
@@ -22,6 +30,7 @@ struct L1L2Path {
     L1L2PathProblem *problem;
     L1L2PathSolver *solver;
     double (*solution)[L1L2_DIM];
+    L1L2Coverage *coverage; /* NULL: borders are not filled */
 };
 
 static L1L2PathFrame *frame_at(const L1L2Path *path, int64_t t)
@@ -32,7 +41,8 @@ static L1L2PathFrame *frame_at(const L1L2Path *path, int64_t t)
 L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg)
 {
     *out = NULL;
-    assert(cfg->frames.rows >= cfg->window + L1L2_PATH_PAST);
+    assert(cfg->frames.rows >= cfg->window + L1L2_PATH_PAST && cfg->frames.rows >= cfg->window + cfg->fill_reach);
+    assert(cfg->fill_reach <= L1L2_COVERAGE_MAX_REACH);
     L1L2Path *path = l1l2_mem_new(1, sizeof *path);
     if (!path)
         return L1L2STAB_ERR_NOMEM;
@@ -41,7 +51,9 @@ L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg)
     path->problem = l1l2_path_problem_create(cfg->window, dim);
     path->solver = l1l2_path_solver_create(cfg->window, dim);
     path->solution = l1l2_mem_new((size_t)cfg->window, sizeof *path->solution);
-    if (!path->problem || !path->solver || !path->solution) {
+    if (cfg->fill_reach > 0)
+        path->coverage = l1l2_mem_new(1, sizeof *path->coverage);
+    if (!path->problem || !path->solver || !path->solution || (cfg->fill_reach > 0 && !path->coverage)) {
         l1l2_path_free(path);
         return L1L2STAB_ERR_NOMEM;
     }
@@ -58,6 +70,7 @@ void l1l2_path_free(L1L2Path *path)
     l1l2_path_problem_free(path->problem);
     l1l2_path_solver_free(path->solver);
     l1l2_mem_free(path->solution);
+    l1l2_mem_free(path->coverage);
     l1l2_mem_free(path);
 }
 
@@ -69,7 +82,7 @@ void l1l2_path_reset(L1L2Path *path)
 
 static L1L2PathCropWindow crop_of(const L1L2Path *path, const L1L2PathFrame *frame)
 {
-    return l1l2_path_crop_window(path->cfg.width, path->cfg.height, frame->crop_ratio, path->problem->dim);
+    return l1l2_path_crop_window(path->cfg.width, path->cfg.height, frame->room_ratio, path->problem->dim);
 }
 
 /* How many frames of a window are averaged with the window before it. If none, the join is continuous. */
@@ -212,7 +225,7 @@ static void decide(L1L2Path *path, const L1L2PathWindow *step, const L1L2PathSol
 
 /* If no solver converged, the predictor's point is still used where its bound shows that it is close to the optimum.
  * Otherwise hold_course() makes the path. */
-static void solve_window(L1L2Path *path, const L1L2PathWindow *step)
+static L1L2PathSolverReport solve_once(L1L2Path *path, const L1L2PathWindow *step)
 {
     const double near_enough = 1e-4;
     set_camera_path(path, step);
@@ -228,6 +241,70 @@ static void solve_window(L1L2Path *path, const L1L2PathWindow *step)
         l1l2_log(path->cfg.log, L1L2STAB_LOG_WARN,
                  "path: solver did not converge on a window of %d frames (objective within %.2g of its optimum)%s",
                  step->count, report.bound, usable ? "" : ": holding a feasible path");
+    return report;
+}
+
+/* What the neighbors of a frame show. False if some of them have not come yet: more may be covered then. */
+static bool set_coverage(L1L2Path *path, const L1L2PathWindow *step, int64_t frame)
+{
+    const bool ended = step->emit == step->count || step->early;
+    const int64_t end = path->start + step->first + step->count, reach = path->cfg.fill_reach;
+    const double diagonal = hypot(path->cfg.width, path->cfg.height);
+    L1L2Coverage *coverage = path->coverage;
+    L1L2Mat chain = l1l2_mat_identity(), inverse;
+    coverage->half_w = path->cfg.width / (2.0 * diagonal);
+    coverage->half_h = path->cfg.height / (2.0 * diagonal);
+    coverage->margin = path->cfg.fill_margin;
+    coverage->count = 0;
+    for (int64_t k = frame - 1; k >= path->start && k >= frame - reach && frame_at(path, k + 1)->linked; k--) {
+        chain = l1l2_mat_mul(frame_at(path, k + 1)->F, chain);
+        coverage->neighbor[coverage->count++] = chain;
+    }
+    chain = l1l2_mat_identity();
+    for (int64_t k = frame + 1; k < end && k <= frame + reach && frame_at(path, k)->linked; k++) {
+        l1l2_mat_inverse(frame_at(path, k)->F, &inverse);
+        chain = l1l2_mat_mul(inverse, chain);
+        coverage->neighbor[coverage->count++] = chain;
+    }
+    return ended || frame + reach < end;
+}
+
+/* The room changes slowly beside a frame. */
+static void follow(L1L2PathFrame *frame, const L1L2PathFrame *beside)
+{
+    frame->room_ratio = fmax(frame->room_ratio, beside->room_ratio - room_step);
+}
+
+/* Gives less room to the frames of a window that lack too much, and to those around them. False if there are none. */
+static bool tighten(L1L2Path *path, const L1L2PathWindow *step)
+{
+    const int64_t first = path->start + step->first, end = first + step->count;
+    bool any = false;
+    for (int64_t t = first; t < end; t++) {
+        L1L2PathFrame *frame = frame_at(path, t);
+        if (!set_coverage(path, step, t))
+            continue;
+        const double ratio =
+            l1l2_coverage_ratio(path->coverage, &frame->next_B, frame->room_ratio, most_lacking, tightest_room);
+        any = any || ratio > frame->room_ratio;
+        frame->room_ratio = ratio;
+    }
+    for (int64_t t = first + 1; any && t < end; t++)
+        follow(frame_at(path, t), frame_at(path, t - 1));
+    for (int64_t t = end - 2; any && t >= first; t--)
+        follow(frame_at(path, t), frame_at(path, t + 1));
+    return any;
+}
+
+static void solve_window(L1L2Path *path, const L1L2PathWindow *step)
+{
+    for (int t = 0; t < step->count; t++) {
+        L1L2PathFrame *frame = frame_at(path, path->start + step->first + t);
+        frame->room_ratio = frame->crop_ratio;
+    }
+    L1L2PathSolverReport report = solve_once(path, step);
+    for (int i = 0; path->coverage && i < TIGHTENINGS && tighten(path, step); i++)
+        report = solve_once(path, step);
     decide(path, step, &report);
 }
 
@@ -270,6 +347,8 @@ void l1l2_path_push(L1L2Path *path, const L1L2PathInput *input)
         .F = starts_path ? l1l2_mat_identity() : usable_motion(path, input->F),
         .lambda = input->lambda,
         .crop_ratio = path->crop_ratio,
+        .room_ratio = path->crop_ratio,
+        .linked = !starts_path && !input->lost,
         .step = starts_path || input->step == 0.0 ? 1.0 : input->step,
         .path_index = (uint64_t)(path->pushed - path->start),
     };

@@ -38,8 +38,10 @@ typedef struct L1L2PathConfig {
     L1L2StabJoin join;
     L1L2StabMotionModel model; /* of F, and with it of B and of the paths */
     L1L2StabSolver solver;
+    int fill_reach;     /* what a frame lacks comes from frames so many before and after it; 0: it is not shown */
+    double fill_margin; /* at the sides of these frames, not relied on; diagonals */
     const L1L2StabLogger *log;
-    L1L2FrameColumn frames; /* of L1L2PathFrame; at least window + L1L2_PATH_PAST rows */
+    L1L2FrameColumn frames; /* of L1L2PathFrame; at least window + L1L2_PATH_PAST rows, and window + fill_reach */
 } L1L2PathConfig;
 
 /* The path's part of a frame's record. Only the path writes it. */
@@ -50,6 +52,8 @@ typedef struct L1L2PathFrame {
     uint64_t path_index; /* frames since the path's start */
     double lambda;       /* as it was when the frame was pushed */
     double crop_ratio;   /* in effect for this frame: after a change it ramps to the new setting */
+    double room_ratio;   /* the crop ratio that bounds B: larger where a filled border would lack too much */
+    bool linked;         /* F was measured or given */
     double step;         /* time since the frame before, nominal frames; 1 at a path's first frame */
     bool early;          /* decided by an early window, with a shorter look-ahead */
     bool fallback;       /* no solver converged: the path is feasible and continuous, but not the optimum */
@@ -61,6 +65,7 @@ typedef struct L1L2PathInput {
     const L1L2Mat *F;    /* frame t to t-1. It is reduced to the path's model; a map that is not finite or not
                           * invertible counts as no motion */
     bool starts_path;    /* the path before it ends; F is not used */
+    bool lost;           /* F is a guess: nothing is filled across it */
     double lambda;       /* of eq. (4) at 30 frames/s */
     double crop_ratio;   /* wanted. The one in effect changes by at most L1L2_CROP_STEP a frame: a slower change is
                           * followed exactly, a jump becomes a zoom. A path that starts has it at once */

@@ -3,6 +3,7 @@
 #ifndef PATH_FIXTURE_H
 #define PATH_FIXTURE_H
 
+#include <stdio.h>
 #include <string.h>
 
 #include "checkx.h"
@@ -17,7 +18,7 @@ static const double diagonal_px = 734.3023900274327; /* of 640x360 */
 typedef struct Run {
     int frames;
     L1L2Mat F[MAX_FRAMES];
-    bool starts[MAX_FRAMES];
+    bool starts[MAX_FRAMES], lost[MAX_FRAMES];
     double step[MAX_FRAMES]; /* 0: one frame */
     int hurry[MAX_FRAMES]; /* how many of the held frames are hurried after frame t was pushed */
     L1L2PathFrame out[MAX_FRAMES]; /* the path's rows: frame t is in row t */
@@ -32,6 +33,7 @@ typedef struct Setup {
     L1L2StabMotionModel model;
     L1L2StabSolver solver;
     double lambda, crop_ratio;
+    int fill_reach;
 } Setup;
 
 static inline Setup defaults(void)
@@ -48,7 +50,7 @@ static inline L1L2Path *new_path(const Setup *setup, Run *r)
         .width = setup->width, .height = setup->height, .frame_rate = setup->frame_rate,
         .weights = {setup->weights[0], setup->weights[1], setup->weights[2]},
         .window = setup->window, .overlap = setup->overlap, .join = setup->join, .model = setup->model,
-        .solver = setup->solver, .frames = {r->out, sizeof *r->out, MAX_FRAMES},
+        .solver = setup->solver, .fill_reach = setup->fill_reach, .frames = {r->out, sizeof *r->out, MAX_FRAMES},
     };
     L1L2Path *path;
     ck_assert_int_eq(l1l2_path_create(&path, &cfg), L1L2STAB_OK);
@@ -57,12 +59,15 @@ static inline L1L2Path *new_path(const Setup *setup, Run *r)
 
 static inline void push(L1L2Path *path, const Setup *setup, const L1L2Mat *F, bool starts_path)
 {
-    l1l2_path_push(path, &(L1L2PathInput){F, starts_path, setup->lambda, setup->crop_ratio, 0.0});
+    l1l2_path_push(path, &(L1L2PathInput){.F = F, .starts_path = starts_path, .lambda = setup->lambda,
+                                          .crop_ratio = setup->crop_ratio});
 }
 
 static inline void push_frame(L1L2Path *path, const Setup *setup, const Run *r, int t)
 {
-    l1l2_path_push(path, &(L1L2PathInput){&r->F[t], r->starts[t], setup->lambda, setup->crop_ratio, r->step[t]});
+    l1l2_path_push(path, &(L1L2PathInput){.F = &r->F[t], .starts_path = r->starts[t], .lambda = setup->lambda,
+                                          .crop_ratio = setup->crop_ratio, .step = r->step[t],
+                                          .lost = r->lost[t]});
 }
 
 /* True if the next frame of the path is frame t and is decided. */
@@ -134,6 +139,22 @@ static inline Run *drifting_run(int frames, double pan_px, double drift_px, doub
 static inline Run *shaky_run(int frames, double pan_px, double shake_px, uint64_t seed)
 {
     return drifting_run(frames, pan_px, 0.0, shake_px, seed);
+}
+
+/* A camera path that was measured on real video (tests/reference/motion). Sets the size in *cfg. */
+static inline Run *measured_run(const char *name, Setup *cfg)
+{
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s.txt", REFERENCE_MOTION, name);
+    FILE *file = fopen(path, "r");
+    ck_assert_msg(file != NULL, "%s cannot be read", path);
+    ck_assert_int_eq(fscanf(file, "# %d %d", &cfg->width, &cfg->height), 2);
+    Run *r = new_run(0);
+    for (double a, b, x, y; fscanf(file, "%lf %lf %lf %lf", &a, &b, &x, &y) == 4; r->frames++)
+        r->F[r->frames] = l1l2_mat_similarity(a, b, x, y);
+    fclose(file);
+    ck_assert_int_gt(r->frames, 150);
+    return r;
 }
 
 /* Every frame was solved, and its update transform meets the constraints. */

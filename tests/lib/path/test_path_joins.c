@@ -13,21 +13,6 @@ typedef struct Roughness {
     int count[2];
 } Roughness;
 
-static Run *measured_run(const char *name, Setup *cfg)
-{
-    char path[512];
-    snprintf(path, sizeof path, "%s/%s.txt", REFERENCE_MOTION, name);
-    FILE *file = fopen(path, "r");
-    ck_assert_msg(file != NULL, "%s cannot be read", path);
-    ck_assert_int_eq(fscanf(file, "# %d %d", &cfg->width, &cfg->height), 2);
-    Run *r = new_run(0);
-    for (double a, b, x, y; fscanf(file, "%lf %lf %lf %lf", &a, &b, &x, &y) == 4; r->frames++)
-        r->F[r->frames] = l1l2_mat_similarity(a, b, x, y);
-    fclose(file);
-    ck_assert_int_gt(r->frames, 150);
-    return r;
-}
-
 /* Where corner k of the frame goes in one smooth step, px. */
 static L1L2Point corner_step(const Run *r, const Setup *cfg, int t, int k)
 {

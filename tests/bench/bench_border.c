@@ -5,7 +5,8 @@
  *
  *   all                     PSNR (dB) of the luma on all pixels that the frame itself does not show
  *   fill, nearest, mirror   the same on those that a neighbor gave: as filled; from the nearest frame that shows the
- *                           pixel by the chained motions; and mirrored (border=extend)
+ *                           pixel by the chained motions; and the frame mirrored at its sides
+ *   SSIM                    as filled, mirrored: structural similarity around these pixels (Wang et al., 2004; 7x7)
  *   filled, extended        parts of the output, %: mean, and the worst frame's extended part
  *   flicker                 temporal change of pixels that are filled in two frames in a row, by the truth's
  *   slopes                  gradient energy of filled pixels, by the truth's
@@ -14,6 +15,8 @@
  *
  * usage: gst-launch-1.0 -q filesrc location=CLIP ! decodebin ! videoconvert ! video/x-raw,format=I420 ! fdsink |
  *        bench_border WIDTH HEIGHT [FRAMES]             (WIDTH a multiple of 8: rows without padding)
+ *        bench_border planar | depth | movers           a rendered scene, 640x360, 90 frames, noise 5: one plane;
+ *                                                       nearer layers that move up to 1.5 times as far; walkers
  */
 #include <l1l2stab/l1l2stab.h>
 #include <math.h>
@@ -22,6 +25,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "synth.h"
 #include "warp/warp.h"
 
 static const double held_out = 0.08, crop_ratio = 0.85;
@@ -40,7 +44,7 @@ typedef struct Planes {
 
 /* What came out for one frame. */
 typedef struct Output {
-    uint8_t *fill, *mirror, *provider;
+    uint8_t *fill, *provider;
     L1L2StabInfo info;
 } Output;
 
@@ -66,16 +70,50 @@ static Planes cropped(const Clip *clip, int t)
     return p;
 }
 
+static void hold_out(Clip *clip)
+{
+    clip->left = (int)(clip->width * held_out) / 4 * 4;
+    clip->top = (int)(clip->height * held_out) / 4 * 4;
+    clip->in_width = clip->width - 2 * clip->left;
+    clip->in_height = clip->height - 2 * clip->top;
+}
+
 static void read_clip(Clip *clip, int most, FILE *in)
 {
     clip->size = (size_t)clip->width * (size_t)clip->height * 3 / 2;
     clip->data = must(malloc(clip->size * (size_t)most));
     for (uint8_t *to = clip->data; clip->frames < most && fread(to, 1, clip->size, in) == clip->size; to += clip->size)
         clip->frames++;
-    clip->left = (int)(clip->width * held_out) / 4 * 4;
-    clip->top = (int)(clip->height * held_out) / 4 * 4;
-    clip->in_width = clip->width - 2 * clip->left;
-    clip->in_height = clip->height - 2 * clip->top;
+    hold_out(clip);
+}
+
+static void render_clip(Clip *clip, const char *scene)
+{
+    SynthConfig cfg = synth_defaults();
+    cfg.width = clip->width = 640;
+    cfg.height = clip->height = 360;
+    cfg.noise = 5.0;
+    cfg.shake = 8.0;
+    if (!strcmp(scene, "depth")) {
+        cfg.parallax = 0.5;
+    } else if (!strcmp(scene, "movers")) {
+        cfg.movers = 4;
+        cfg.foreground = 0.2;
+        cfg.mover_speed = 4.0;
+    } else if (strcmp(scene, "planar") != 0) {
+        fprintf(stderr, "there is no scene \"%s\": planar, depth or movers\n", scene);
+        exit(EXIT_FAILURE);
+    }
+    Synth *synth = synth_new(&cfg);
+    clip->frames = 90;
+    clip->size = (size_t)clip->width * (size_t)clip->height * 3 / 2;
+    clip->data = must(malloc(clip->size * (size_t)clip->frames));
+    for (int t = 0; t < clip->frames; t++) {
+        const Planes p = planes_of(clip->data + (size_t)t * clip->size, clip->width, clip->height);
+        synth_render(synth, t, L1L2STAB_FORMAT_I420, p.data, p.stride);
+    }
+    synth_free(synth);
+    hold_out(clip);
 }
 
 /* Returns the CPU time of all threads, ms a frame. */
@@ -121,8 +159,6 @@ static double stabilize(const Clip *clip, L1L2StabBorder border, Output *outputs
             }
             if (border == L1L2STAB_BORDER_CROP) {
                 free(picture);
-            } else if (border == L1L2STAB_BORDER_EXTEND) {
-                o->mirror = picture;
             } else {
                 o->fill = picture;
                 o->provider = must(malloc(pixels));
@@ -137,6 +173,7 @@ static double stabilize(const Clip *clip, L1L2StabBorder border, Output *outputs
 
 typedef struct Sums {
     double fill, nearest, mirror, all; /* squared errors */
+    double ssim[2];                    /* as filled, mirrored */
     long judged, nearest_judged, all_judged;
     double flicker[2], slopes[2], seam[2];
     double filled, extended, worst;
@@ -233,12 +270,46 @@ static void add_seam(const Output *o, int i, int step, Sums *sums)
     sums->seam[1] += 0.5 * (abs(p[-3 * step] - p[-4 * step]) + abs(p[5 * step] - p[4 * step]));
 }
 
+static int reflected(int at, int size)
+{
+    at = at < 0 ? -1 - at : at >= size ? 2 * size - 1 - at : at;
+    return at < 0 ? 0 : at < size ? at : size - 1;
+}
+
+/* The picture as filled, with the cropped frame mirrored at its sides in place of what neighbors gave. */
+static void mirror(const Clip *clip, const Output *o, int t, uint8_t *dst)
+{
+    const int w = clip->in_width, h = clip->in_height;
+    const L1L2Mat map = to_mat(o->info.warp);
+    const Planes in = cropped(clip, t);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            const L1L2Point p = l1l2_mat_apply(&map, (L1L2Point){x + 0.5 - 0.5 * w, y + 0.5 - 0.5 * h});
+            const int u = reflected((int)floor(p.x + 0.5 * w), w), v = reflected((int)floor(p.y + 0.5 * h), h);
+            dst[y * w + x] = o->provider[y * w + x] == 0 ? o->fill[y * w + x] : in.data[0][v * in.stride[0] + u];
+        }
+}
+
+/* The structural similarity of two pictures around a pixel. */
+static double ssim_at(const uint8_t *a, const uint8_t *b, int width)
+{
+    const double c1 = square(0.01 * 255.0), c2 = square(0.03 * 255.0), n = 49.0;
+    double sa = 0.0, sb = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
+    for (int y = -3; y <= 3; y++)
+        for (int x = -3; x <= 3; x++) {
+            const double p = a[y * width + x], q = b[y * width + x];
+            sa += p, sb += q, aa += p * p, bb += q * q, ab += p * q;
+        }
+    const double ma = sa / n, mb = sb / n, va = aa / n - ma * ma, vb = bb / n - mb * mb, cov = ab / n - ma * mb;
+    return (2.0 * ma * mb + c1) * (2.0 * cov + c2) / ((ma * ma + mb * mb + c1) * (va + vb + c2));
+}
+
 static void judge(const Clip *clip, const Output *outputs, Sums *sums)
 {
     const int w = clip->in_width, h = clip->in_height;
     const size_t pixels = (size_t)w * (size_t)h;
     uint8_t *truth[2] = {must(malloc(pixels)), must(malloc(pixels))}, *nearest = must(malloc(pixels));
-    uint8_t *known = must(malloc(pixels));
+    uint8_t *known = must(malloc(pixels)), *mirrored = must(malloc(pixels));
     L1L2Warp *from_all = luma_warp(clip->width, clip->height, w, h), *from_cropped = luma_warp(w, h, w, h);
     for (int t = 0; t < clip->frames; t++) {
         const Output *o = &outputs[t];
@@ -246,6 +317,7 @@ static void judge(const Clip *clip, const Output *outputs, Sums *sums)
         uint8_t *now = truth[t % 2], *before = truth[(t + 1) % 2];
         warp_luma(from_all, map, clip->data + (size_t)t * clip->size, clip->width, now, w);
         fill_nearest(clip, outputs, t, from_cropped, nearest, known);
+        mirror(clip, o, t, mirrored);
         sums->filled += o->info.filled;
         sums->extended += o->info.extended;
         sums->worst = fmax(sums->worst, o->info.extended);
@@ -254,8 +326,8 @@ static void judge(const Clip *clip, const Output *outputs, Sums *sums)
                 add_seam(o, y * w + x, 1, sums);
                 add_seam(o, y * w + x, w, sums);
             }
-        for (int y = 1; y + 1 < h; y++)
-            for (int x = 1; x + 1 < w; x++) {
+        for (int y = 3; y + 3 < h; y++)
+            for (int x = 3; x + 3 < w; x++) {
                 const int i = y * w + x;
                 if (o->provider[i] == 0 || !inside(map, x, y, w, h, 0.5 * clip->width, 0.5 * clip->height))
                     continue;
@@ -265,7 +337,9 @@ static void judge(const Clip *clip, const Output *outputs, Sums *sums)
                     continue;
                 sums->judged++;
                 sums->fill += square(o->fill[i] - now[i]);
-                sums->mirror += square(o->mirror[i] - now[i]);
+                sums->mirror += square(mirrored[i] - now[i]);
+                sums->ssim[0] += ssim_at(o->fill + i, now + i, w);
+                sums->ssim[1] += ssim_at(mirrored + i, now + i, w);
                 if (known[i]) {
                     sums->nearest += square(nearest[i] - now[i]);
                     sums->nearest_judged++;
@@ -284,6 +358,7 @@ static void judge(const Clip *clip, const Output *outputs, Sums *sums)
     free(truth[1]);
     free(nearest);
     free(known);
+    free(mirrored);
 }
 
 static double psnr(double squares, long count)
@@ -293,29 +368,35 @@ static double psnr(double squares, long count)
 
 int main(int argc, char **argv)
 {
-    if (argc < 3) {
-        printf("usage: ... raw I420 on standard input ... | %s WIDTH HEIGHT [FRAMES]\n", argv[0]);
+    Clip clip = {0};
+    Sums sums = {0};
+    if (argc < 2) {
+        printf("usage: ... raw I420 on standard input ... | %s WIDTH HEIGHT [FRAMES]\n"
+               "       %s planar | depth | movers\n", argv[0], argv[0]);
         return EXIT_FAILURE;
     }
-    Clip clip = {.width = atoi(argv[1]), .height = atoi(argv[2])};
-    Sums sums = {0};
-    read_clip(&clip, argc > 3 ? atoi(argv[3]) : 200, stdin);
+    if (argc == 2) {
+        render_clip(&clip, argv[1]);
+    } else {
+        clip.width = atoi(argv[1]);
+        clip.height = atoi(argv[2]);
+        read_clip(&clip, argc > 3 ? atoi(argv[3]) : 200, stdin);
+    }
     Output *outputs = must(calloc((size_t)clip.frames, sizeof *outputs));
-    stabilize(&clip, L1L2STAB_BORDER_EXTEND, outputs);
     const double cropping = stabilize(&clip, L1L2STAB_BORDER_CROP, outputs);
     const double filling = stabilize(&clip, L1L2STAB_BORDER_FILL, outputs);
     judge(&clip, outputs, &sums);
-    printf("all %.2f  fill %.2f  nearest %.2f  mirror %.2f dB | filled %.2f  extended %.3f  worst %.2f %% | "
-           "flicker %.2f  slopes %.2f  seam %.2f | judged %.2f Mpx | CPU %.1f and %.1f ms\n",
+    printf("all %.2f  fill %.2f  nearest %.2f  mirror %.2f dB | SSIM %.3f %.3f | filled %.2f  extended %.3f  "
+           "worst %.2f %% | flicker %.2f  slopes %.2f  seam %.2f | judged %.2f Mpx | CPU %.1f and %.1f ms\n",
            psnr(sums.all, sums.all_judged), psnr(sums.fill, sums.judged),
            psnr(sums.nearest, sums.nearest_judged), psnr(sums.mirror, sums.judged),
+           sums.ssim[0] / (double)sums.judged, sums.ssim[1] / (double)sums.judged,
            100.0 * sums.filled / clip.frames, 100.0 * sums.extended / clip.frames, 100.0 * sums.worst,
            sums.flicker[0] / fmax(sums.flicker[1], 1.0), sums.slopes[0] / fmax(sums.slopes[1], 1.0),
            sums.seam[0] / fmax(sums.seam[1], 1.0),
            (double)sums.judged * 1e-6, cropping, filling);
     for (int t = 0; t < clip.frames; t++) {
         free(outputs[t].fill);
-        free(outputs[t].mirror);
         free(outputs[t].provider);
     }
     free(outputs);

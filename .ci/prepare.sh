@@ -10,9 +10,9 @@ build=$(realpath -m "${1:-$top/build}")
 options=("${@:2}")
 overlay=$top/subprojects/packagefiles/osqp
 
-# Free disk space that is needed, in megabytes. A minimal Debian lacks about 580 packages, and apt keeps their archives.
-packages_need=1900
-archives_need=500
+# Free disk space that is needed, in megabytes. A minimal Debian lacks about 590 packages, and apt keeps their archives.
+packages_need=2250
+archives_need=610
 build_need=100
 
 say() { echo "prepare: $*" >&2; }

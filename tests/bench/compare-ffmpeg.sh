@@ -1,15 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Compares the library with FFmpeg's vidstabdetect + vidstabtransform and deshake, with default settings, on the same
-# file and cores. The library runs as the filter of the same ffmpeg, and as the GStreamer element.
-# Time: CPU and wall time per frame less the time of decoding, in ms, medians. The programs take turns, so that all run
-# under the same load. The cost of tracking is the difference to a run that reads the motion from a file.
-# Steadiness: the shake of the result in pixels, by samples/measure-shake, and its ratio to the shake of the source.
-# It does not show borders or loss of sharpness.
+# Compares the speed of the library with that of FFmpeg's vidstabdetect + vidstabtransform and deshake, with default
+# settings, on the same file and cores. The library runs as the filter of the same ffmpeg, and as the GStreamer element.
+# It prints CPU and wall time per frame less the time of decoding, in ms, medians. The programs take turns, so that all
+# run under the same load. The cost of tracking is the difference to a run that reads the motion from a file.
+# compare_quality.py compares the results.
 # usage: compare-ffmpeg.sh BUILD [CLIP.mp4 [ROUNDS [CORES]]]
-# Without a clip, or with '': 1080p30 of the test scene. ROUNDS: 0 measures the quality alone. CORES: as taskset has
-# them, by default 0,1. Needs GNU time. The ffmpeg is a small one that tests/ffmpeg/build-ffmpeg.sh builds, which takes
-# minutes at first. It needs libvidstab-dev.
+# Without a clip, or with an empty one: 1080p30 of the test scene. ROUNDS: by default 5. CORES: as taskset has them, by
+# default 0,1.
+# Needs GNU time. The ffmpeg is a small one that tests/ffmpeg/build-ffmpeg.sh builds, which takes minutes at first. It
+# needs libvidstab-dev.
 set -eu
 
 build=$(realpath "$1")
@@ -75,7 +75,6 @@ median() {
 
 above() { echo "$(median "$1" "$3") $(median "$2" "$3")" | awk '{ print $1 - $2 }'; }
 
-time_table() {
 {
   for column in 1 2; do
     for what in $all; do
@@ -115,19 +114,3 @@ time_table() {
           ms[2, "vidstabdetect"] / ms[2, "tracking"])
     ratio("  l1l2stab over deshake", ms[1, "deshake"] / ms[1, "filter"], ms[2, "deshake"] / ms[2, "filter"])
   }'
-}
-
-# shake NAME GRAPH: a line of the table of quality
-shake() {
-  by_small ffmpeg -v error -nostdin -y -i "$clip" -an -vf "$2" -c:v ffv1 "$work/result.mkv"
-  "$build/samples/measure-shake" "$clip" "$work/result.mkv" 2>> "$work/log" |
-    awk -v name="$1" '/ px$/ { px = $(NF - 1) } $1 == "ratio:" { printf "  %-40s %8.3f %8.3f\n", name, px, $2 }'
-}
-
-[ "$rounds" -eq 0 ] || time_table
-echo 'shake:                                           px  of source'
-shake source null
-by_small ffmpeg -v error -nostdin -i "$clip" -an -vf "vidstabdetect=result=$work/motion.trf" -f null -
-shake 'vidstabdetect + vidstabtransform' "vidstabtransform=input=$work/motion.trf"
-shake deshake deshake
-shake l1l2stab l1l2stab

@@ -57,6 +57,30 @@ def test_opencv_shows_a_whole_frame_and_who_gave_it(tmp_path):
     assert (abs(who[..., 0] - who[..., 2]) > 20).any(), 'no neighbor gave anything'
 
 
+def zoom(cv2, first, second):
+    """How much larger the second picture shows what the first has: by ORB points and RANSAC."""
+    orb = cv2.ORB_create(1000)
+    (points, words), (others, other_words) = (orb.detectAndCompute(picture, None) for picture in (first, second))
+    matches = cv2.BFMatcher(cv2.NORM_HAMMING, crossCheck=True).match(words, other_words)
+    here, there = (cv2.KeyPoint_convert(p, [getattr(m, name) for m in matches])
+                   for p, name in ((points, 'queryIdx'), (others, 'trainIdx')))
+    matrix, _ = cv2.estimateAffinePartial2D(here, there)
+    return (matrix[0, 0] ** 2 + matrix[1, 0] ** 2) ** 0.5
+
+
+def test_opencv_shows_a_frame_at_three_crop_ratios(tmp_path):
+    cv2 = pytest.importorskip('cv2', reason='the Python package cv2 is not installed')
+    source, target = tmp_path / 'in.mp4', tmp_path / 'out.jpg'
+    write_clip(source)
+    subprocess.run([sys.executable, SAMPLES / 'crop_ratios_opencv.py', source, target, '30'], check=True, timeout=100)
+    made = cv2.imread(str(target))
+    assert made.shape == (2 * conftest.HEIGHT, 2 * conftest.WIDTH, 3)
+    rows = [made[:conftest.HEIGHT], made[conftest.HEIGHT:]]
+    filmed, *stabilized = [half for row in rows for half in (row[:, :conftest.WIDTH], row[:, conftest.WIDTH:])]
+    for picture, ratio in zip(stabilized, (0.95, 0.9, 0.8)):
+        assert zoom(cv2, filmed, picture) == pytest.approx(1 / ratio, rel=0.02)
+
+
 def test_imageio_frames_are_stabilized(tmp_path):
     imageio = pytest.importorskip('imageio', reason='the Python package imageio is not installed')
     if hasattr(imageio, 'v2'):  # older ones need no other package

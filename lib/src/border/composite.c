@@ -311,6 +311,8 @@ static void add_source(const Row *row, int index, int sample, float weight, Blen
  * the same: something real, if perhaps at the wrong place. Where there is none, it is extended. */
 static void fill_rest(const Plane *plane, const Positions *own, int i, Blend *blend)
 {
+    if (blend->rest == 0.0f)
+        return;
     const float agreed = 1.0f - blend->rest, covered = 1.0f - blend->trusting.rest, doubt = doubt_weight * blend->rest;
     if (covered >= least_weight) {
         for (int k = 0; k < plane->components; k++)

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Prints how many instructions the inner loops take on 64-bit ARM, in plain C and by NEON: a table of docs/arm.md.
+# Prints how many instructions the inner loops take on 64-bit ARM, in plain C and by NEON, as a table
+# (docs/portability.md).
 # qemu counts them by its plugin `insn`, which Debian does not build: qemu is built from its source package, in ten
 # minutes. An instruction is not a time; processors differ.
 # usage: tests/cross/count-instructions.sh [BUILD_DIR]      (default: build, after tests/cross/run.sh arm64 BUILD_DIR)

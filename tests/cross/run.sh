@@ -27,6 +27,9 @@ case $arch in
 esac
 triplet=$cpu-linux-gnu
 
+# Meson sets these for tests. They would slow debootstrap and apt down.
+unset MALLOC_PERTURB_ ASAN_OPTIONS UBSAN_OPTIONS MSAN_OPTIONS
+
 say() { echo "cross: $*" >&2; }
 die() {
   say "$*"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Scanlines: their positions, and their bytes on this processor against those of plain C. Without AVX2, the tests of
+/* Scanlines: their positions, and their bytes on this processor against those of plain C. Without SIMD, the tests of
  * bytes compare plain C with itself. */
 #include <math.h>
 #include <sys/mman.h>

@@ -9,8 +9,9 @@
 #        tests/run.sh --long [MESON_TEST_OPTION...]        only the long tests, which the others leave out: the filter
 #                                                          in an ffmpeg that they build, half an hour at first; Debian
 #                                                          packages, built and installed in a clean root; the Python
-#                                                          wheel with an OpenCV that they build; soaks, 1,000 damaged
-#                                                          files
+#                                                          wheel with an OpenCV that they build; the library for ARM
+#                                                          and other processors under an emulator; soaks, 1,000
+#                                                          damaged files
 # The environment variable BUILD_DIR names another build directory. CC and CXX choose the compiler of a new one.
 set -euo pipefail
 

@@ -8,13 +8,18 @@ path=$1
 shift
 headers=$(find "$path" -name '*.h' | sort)
 
+avx2=-Wundef # no more options are needed
+if echo 'int a;' | "$@" -Werror -mavx2 -fsyntax-only -xc - 2>/dev/null; then
+  avx2=-mavx2 # a compiler for x86
+fi
+
 status=0
 IFS='
 '
 for header in $headers; do
   case $header in
-    */x86/*) simd=-mavx2 ;;
-    *) simd=-Wundef ;; # no more options are needed
+    */x86/*) simd=$avx2 ;;
+    *) simd=-Wundef ;;
   esac
   "$@" -Wall -Wextra -Wpedantic -Wundef -Werror "$simd" -fsyntax-only "$header" || status=1
 done

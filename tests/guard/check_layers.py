@@ -57,7 +57,7 @@ FOREIGN = [
     (r'(gst|glib|gio|gobject|gmodule)\b', r'(plugin/gstreamer|tests/gstreamer|tests/fuzz|samples)/.*'),
     (r'(libav|libsw)[a-z]+/', r'samples/(l1l2stab/.*|stabilize-libav\.c)'),
     (r'check\.h', r'tests/.*'),
-    (r'.*intrin\.h', r'lib/src/.*'),
+    (r'.*intrin\.h|simde/', r'lib/src/common/(intrinsics|avx2_halves)\.h'),
 ]
 
 
@@ -135,6 +135,7 @@ def self_test():
         ('plugin/gstreamer/plugin.c', 'libavutil/opt.h', False), ('samples/sample.c', 'libavcodec/avcodec.h', False),
         ('plugin/gstreamer/plugin.c', 'libavutil/opt.h', True), ('lib/src/common/log.c', 'libavutil/log.h', False),
         ('elsewhere/a.c', 'stdio.h', False), ('plugin/a.c', 'stdio.h', False),
+        ('lib/src/warp/x86/avx2.h', 'immintrin.h', False), ('lib/src/warp/warp.c', 'simde/x86/sse4.1.h', False),
     ]
     right = [
         ('lib/src/stabilizer.c', 'path/path.h', True), ('lib/src/path/problem_as_qp.c', 'path/qp.h', True),
@@ -143,6 +144,7 @@ def self_test():
         ('lib/src/path/path.c', 'math.h', False), ('lib/src/common/geom.c', PUBLIC, False),
         ('lib/src/warp/x86/avx2.h', 'warp/sample.h', True), ('lib/src/motion/motion.c', 'fit/ransac.h', True),
         ('plugin/ffmpeg/vf.c', 'libavutil/opt.h', True), ('plugin/ffmpeg/vf.c', 'avfilter.h', True),
+        ('lib/src/common/avx2_halves.h', 'simde/x86/sse4.1.h', False),
         ('plugin/ffmpeg/vf.c', PUBLIC, False), ('samples/stabilize-libav.c', 'libavcodec/avcodec.h', False),
     ]
 

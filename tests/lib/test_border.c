@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "common/rng.h"
+#include "formats.h"
 #include "stabilizer_fixture.h"
 
 enum { WINDOW = 8, FRAMES = 24 };
@@ -100,6 +101,8 @@ START_TEST(two_byte_components_need_even_addresses_and_strides)
     static uint16_t memory[ROWS + 8], written[ROWS + 8];
     L1L2StabConfig cfg = small_config(4);
     cfg.format = L1L2STAB_FORMAT_GRAY16_LE;
+    if (format_left_out(cfg.format))
+        return;
     const struct {
         int offset, stride;
         L1L2StabResult result;

@@ -440,8 +440,8 @@ L1L2STAB_API const char *l1l2stab_strerror(L1L2StabResult result);
 /* How many threads work on a frame, including the caller's; 0 for NULL. */
 L1L2STAB_API int l1l2stab_threads(const L1L2Stab *s);
 
-/* The instruction set that the warp's inner loops use on this processor: "avx2", or "none" for plain C. The pictures
- * are the same. Never NULL, never to be freed. */
+/* The instruction set that the warp's inner loops use on this processor: "avx2", "neon", or "none" for plain C. The
+ * pictures are the same. Never NULL, never to be freed. */
 L1L2STAB_API const char *l1l2stab_simd(void);
 
 /* "major.minor.patch" of the library that runs. Never to be freed. */

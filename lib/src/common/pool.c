@@ -37,9 +37,11 @@ struct L1L2Pool {
 
 static int count_cores(void)
 {
+#ifdef CPU_COUNT /* Linux: a process may be kept to some of the cores */
     cpu_set_t allowed;
     if (sched_getaffinity(0, sizeof allowed, &allowed) == 0)
         return CPU_COUNT(&allowed);
+#endif
     const long online = sysconf(_SC_NPROCESSORS_ONLN);
     return online > MAX_THREADS ? MAX_THREADS : online > 0 ? (int)online : 1;
 }

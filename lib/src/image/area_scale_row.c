@@ -21,8 +21,8 @@ static void row(const int16_t *samples, const int32_t *first, const int16_t *wei
 void l1l2_image_scale_functions_init(L1L2AreaScaleFunctions *functions, unsigned cpu)
 {
     functions->row = row;
-#ifdef L1L2_HAVE_X86
-    if (cpu & L1L2_CPU_SSE2)
+#ifdef L1L2_HAVE_SIMD
+    if (cpu & (L1L2_CPU_SSE2 | L1L2_CPU_NEON))
         l1l2_image_scale_functions_init_sse2(functions);
 #else
     (void)cpu;

@@ -53,8 +53,8 @@ static L1L2LkSums compare(const L1L2LkLevel *level, const L1L2LkPlace *place, co
 void l1l2_lk_functions_init(L1L2LkFunctions *functions, unsigned cpu)
 {
     *functions = (L1L2LkFunctions){take, compare};
-#ifdef L1L2_HAVE_X86
-    if (cpu & L1L2_CPU_SSE2)
+#ifdef L1L2_HAVE_SIMD
+    if (cpu & (L1L2_CPU_SSE2 | L1L2_CPU_NEON))
         l1l2_lk_functions_init_sse2(functions);
 #else
     (void)cpu;

@@ -48,7 +48,7 @@ void l1l2_warp_scanline_u8_init(L1L2WarpFunctions *functions);
 void l1l2_warp_direct_u8_init(L1L2WarpFunctions *functions);
 void l1l2_warp_direct_u16_init(L1L2WarpFunctions *functions);
 
-/* The same for processors with AVX2. direct_u8 has none: stabilization does not need it. */
+/* The same for processors with AVX2 or NEON. direct_u8 has none: stabilization does not need it. */
 void l1l2_warp_coords_init_avx2(L1L2WarpFunctions *functions);
 void l1l2_warp_bilinear_u8_init_avx2(L1L2WarpFunctions *functions);
 void l1l2_warp_scanline_u8_init_avx2(L1L2WarpFunctions *functions);

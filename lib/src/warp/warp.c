@@ -129,7 +129,8 @@ void l1l2_warp_free(L1L2Warp *w)
 
 const char *l1l2_warp_simd(void)
 {
-    return l1l2_cpu_features() & L1L2_CPU_AVX2 ? "avx2" : "none";
+    const unsigned features = l1l2_cpu_features();
+    return features & L1L2_CPU_AVX2 ? "avx2" : features & L1L2_CPU_NEON ? "neon" : "none";
 }
 
 /* Finds out whether the map moves all samples by the same whole step. It is enough to test the four corners: the

@@ -6,6 +6,7 @@
 #include "checkx.h"
 #include "common/cpu.h"
 #include "common/rng.h"
+#include "formats.h"
 #include "image/area_scale.h"
 #include "image/area_scale_row.h"
 
@@ -122,7 +123,8 @@ START_TEST(one_component_is_the_mean_of_its_area_rounded_once)
                                              L1L2STAB_FORMAT_I420_12LE, L1L2STAB_FORMAT_P010_10LE,
                                              L1L2STAB_FORMAT_GRAY16_LE};
     for (size_t k = 0; k < sizeof formats / sizeof *formats; k++)
-        ck_assert_double_le(worst_of(formats[k], sizes[_i]), 0.5 + 1.0 / 128);
+        if (!format_left_out(formats[k]))
+            ck_assert_double_le(worst_of(formats[k], sizes[_i]), 0.5 + 1.0 / 128);
 }
 END_TEST
 
@@ -132,7 +134,8 @@ START_TEST(packed_components_are_mixed_as_well)
                                              L1L2STAB_FORMAT_YUY2, L1L2STAB_FORMAT_UYVY,      L1L2STAB_FORMAT_VUYA,
                                              L1L2STAB_FORMAT_AYUV, L1L2STAB_FORMAT_RGBA64_LE, L1L2STAB_FORMAT_AYUV64};
     for (size_t k = 0; k < sizeof formats / sizeof *formats; k++)
-        ck_assert_double_le(worst_of(formats[k], sizes[_i]), 0.5 + 1.0 / 32);
+        if (!format_left_out(formats[k]))
+            ck_assert_double_le(worst_of(formats[k], sizes[_i]), 0.5 + 1.0 / 32);
 }
 END_TEST
 
@@ -142,6 +145,8 @@ START_TEST(a_stretched_picture_is_the_mean_of_its_area)
     static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_GRAY16_LE, L1L2STAB_FORMAT_I420_12LE,
                                              L1L2STAB_FORMAT_P010_10LE, L1L2STAB_FORMAT_RGBA64_LE};
     for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
+        if (format_left_out(formats[k]))
+            continue;
         Trial t = trial_new(formats[k], sizes[_i][0], sizes[_i][1], sizes[_i][2], sizes[_i][3]);
         const int depth = t.format->depth, shift = t.format->shift, span = 1 << (depth - 5);
         const int low = 3 << (depth - 3), count = (int)(t.stride * t.height / 2);
@@ -195,6 +200,8 @@ START_TEST(flat_stays_flat)
                                              L1L2STAB_FORMAT_GRAY16_LE, L1L2STAB_FORMAT_RGBA64_LE};
     static const uint8_t levels[] = {0, 1, 127, 254, 255};
     for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
+        if (format_left_out(formats[k]))
+            continue;
         Trial t = trial_new(formats[k], sizes[_i][0], sizes[_i][1], sizes[_i][2], sizes[_i][3]);
         for (size_t l = 0; l < sizeof levels; l++) {
             memset(t.data, 0, (size_t)t.stride * (size_t)t.height);
@@ -214,7 +221,7 @@ END_TEST
 START_TEST(bytes_and_the_same_levels_in_ten_bits_give_the_same_picture)
 {
     static const L1L2StabFormat deep[] = {L1L2STAB_FORMAT_I420_10LE, L1L2STAB_FORMAT_P010_10LE};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2 && !format_left_out(deep[k]); k++) {
         Trial t = trial_new(L1L2STAB_FORMAT_GRAY8, 1920, 108, 640, 36), d = trial_new(deep[k], 1920, 108, 640, 36);
         for (int y = 0; y < t.height; y++)
             for (int x = 0; x < t.width; x++)
@@ -231,6 +238,8 @@ END_TEST
 
 START_TEST(samples_above_their_depth_saturate)
 {
+    if (format_left_out(L1L2STAB_FORMAT_I420_10LE))
+        return;
     Trial t = trial_new(L1L2STAB_FORMAT_I420_10LE, 1921, 109, 640, 36);
     memset(t.data, 0xFF, (size_t)t.stride * (size_t)t.height);
     run(&t);
@@ -268,6 +277,8 @@ START_TEST(deep_pictures_may_have_any_alignment)
     static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_I420_10LE, L1L2STAB_FORMAT_P010_10LE,
                                              L1L2STAB_FORMAT_GRAY16_LE, L1L2STAB_FORMAT_RGBA64_LE};
     for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
+        if (format_left_out(formats[k]))
+            continue;
         Trial even = trial_new(formats[k], 101, 57, 40, 23), odd = even;
         uint8_t *const memory = malloc((size_t)(even.stride + 1) * (size_t)even.height + 1);
         odd.out = malloc((size_t)even.out_stride * (size_t)even.out_height);

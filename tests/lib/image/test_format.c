@@ -3,13 +3,14 @@
 #include <string.h>
 
 #include "checkx.h"
+#include "formats.h"
 #include "image/format.h"
 
 enum { FIRST = L1L2STAB_FORMAT_GRAY8, LAST = L1L2STAB_FORMAT_AYUV64 };
 
 START_TEST(every_format_of_the_public_header_is_described)
 {
-    for (int id = FIRST; id <= LAST; id++) {
+    for (int id = FIRST; id < end_of_formats(); id++) {
         const L1L2FormatInfo *info = l1l2_image_format_info((L1L2StabFormat)id);
         ck_assert_ptr_nonnull(info);
         ck_assert_int_eq(info->format, id);
@@ -29,14 +30,15 @@ END_TEST
 START_TEST(an_unsupported_format_has_no_description)
 {
     ck_assert_ptr_null(l1l2_image_format_info(L1L2STAB_FORMAT_UNKNOWN));
-    ck_assert_ptr_null(l1l2_image_format_info((L1L2StabFormat)(LAST + 1)));
+    for (int id = end_of_formats(); id <= LAST + 1; id++)
+        ck_assert_ptr_null(l1l2_image_format_info((L1L2StabFormat)id));
     ck_assert_ptr_null(l1l2_image_format_info((L1L2StabFormat)-1));
 }
 END_TEST
 
 START_TEST(no_name_is_used_twice)
 {
-    for (int a = FIRST; a <= LAST; a++)
+    for (int a = FIRST; a < end_of_formats(); a++)
         for (int b = FIRST; b < a; b++)
             ck_assert_str_ne(l1l2_image_format_info((L1L2StabFormat)a)->name,
                              l1l2_image_format_info((L1L2StabFormat)b)->name);
@@ -64,6 +66,8 @@ START_TEST(planes_of_a_frame_have_the_right_number_of_bytes)
         {L1L2STAB_FORMAT_ARGB64_LE, {256}},     {L1L2STAB_FORMAT_AYUV64, {256}},
     };
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        if (format_left_out(cases[k].format))
+            continue;
         const L1L2FormatInfo *info = l1l2_image_format_info(cases[k].format);
         for (int i = 0; i < L1L2_MAX_PLANES; i++) {
             const int bytes = i < info->planes ? l1l2_image_plane_size(8, info->plane[i].log2_sub_x) *
@@ -98,6 +102,12 @@ static double gray_weight(L1L2StabFormat format, int component)
     return l1l2_image_format_info(format)->gray[component];
 }
 
+static void check_gray(L1L2StabFormat format, int component, double weight)
+{
+    if (!format_left_out(format))
+        ck_assert_double_eq(gray_weight(format, component), weight);
+}
+
 START_TEST(gray_is_made_of_the_right_components)
 {
     static const L1L2StabFormat luma_first[] = {L1L2STAB_FORMAT_NV21, L1L2STAB_FORMAT_P010_10LE, L1L2STAB_FORMAT_YUY2};
@@ -106,18 +116,18 @@ START_TEST(gray_is_made_of_the_right_components)
     static const L1L2StabFormat red_first[] = {L1L2STAB_FORMAT_RGBX, L1L2STAB_FORMAT_RGBA, L1L2STAB_FORMAT_RGB};
     static const L1L2StabFormat x_then_red[] = {L1L2STAB_FORMAT_XRGB, L1L2STAB_FORMAT_ARGB, L1L2STAB_FORMAT_ARGB64_LE};
     for (int i = 0; i < 3; i++) {
-        ck_assert_double_eq(gray_weight(luma_first[i], 0), 1.0);
-        ck_assert_double_eq(gray_weight(luma_second[i], 1), 1.0);
-        ck_assert_double_eq(gray_weight(x_then_red[i], 1), 0.299);
-        ck_assert_double_eq(gray_weight(blue_first[i], 0), 0.114);
-        ck_assert_double_eq(gray_weight(red_first[i], 0), 0.299);
+        check_gray(luma_first[i], 0, 1.0);
+        check_gray(luma_second[i], 1, 1.0);
+        check_gray(x_then_red[i], 1, 0.299);
+        check_gray(blue_first[i], 0, 0.114);
+        check_gray(red_first[i], 0, 0.299);
     }
 }
 END_TEST
 
 START_TEST(gray_of_white_is_white)
 {
-    for (int id = FIRST; id <= LAST; id++) {
+    for (int id = FIRST; id < end_of_formats(); id++) {
         double sum = 0.0;
         for (int i = 0; i < l1l2_image_format_pixel_components(l1l2_image_format_info((L1L2StabFormat)id)); i++)
             sum += gray_weight((L1L2StabFormat)id, i);

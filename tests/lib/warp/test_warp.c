@@ -88,6 +88,8 @@ START_TEST(affine_maps_that_are_no_similarities_are_followed_too)
     static const L1L2StabFormat formats[] = {L1L2STAB_FORMAT_NV12, L1L2STAB_FORMAT_BGR, L1L2STAB_FORMAT_BGRX,
                                              L1L2STAB_FORMAT_P010_10LE, L1L2STAB_FORMAT_ARGB64_LE};
     for (size_t f = 0; f < sizeof formats / sizeof formats[0]; f++) {
+        if (format_left_out(formats[f]))
+            continue;
         Picture src = picture_new(formats[f], 61, 43), dst = picture_new(formats[f], 61, 43);
         picture_randomize(&src, 7);
         for (size_t k = 0; k < sizeof maps / sizeof maps[0]; k++)
@@ -157,7 +159,7 @@ START_TEST(chroma_stays_where_the_luma_is)
     const L1L2Mat maps[] = {l1l2_mat_similarity(0.97, 0.03, 0.37, -0.21), l1l2_mat_similarity(0.6, 0.0, 0.0, 0.0),
                             l1l2_mat_similarity(0.0, 0.8, 0.0, 0.0), l1l2_mat_similarity(0.0, -0.8, 0.3, 0.1)};
     for (size_t f = 0; f < sizeof formats / sizeof formats[0]; f++)
-        for (size_t k = 0; k < 4; k++) {
+        for (size_t k = 0; k < 4 && !format_left_out(formats[f]); k++) {
             Picture src = picture_new(formats[f], 101, 103);
             Picture re = picture_new(formats[f], 94, 81), im = picture_new(formats[f], 94, 81);
             L1L2WarpConfig cfg = warp_config(&src, &re);
@@ -180,7 +182,7 @@ int main(void)
     Suite *suite = suite_create("warp");
     TCase *tc = tcase_create("warp");
     tcase_add_loop_test(tc, every_format_and_kernel_follows_a_floating_point_warp, FIRST_FORMAT,
-                        END_FORMAT);
+                        end_of_formats());
     tcase_add_loop_test(tc, maps_that_turn_far_or_zoom_out_follow_it_too, 0, 3);
     tcase_add_loop_test(tc, the_mean_level_is_kept, 0, 3);
     tcase_add_test(tc, affine_maps_that_are_no_similarities_are_followed_too);

@@ -311,7 +311,7 @@ END_TEST
 
 int main(void)
 {
-    const int first = FIRST_FORMAT, end = END_FORMAT;
+    const int first = FIRST_FORMAT, end = end_of_formats();
     Suite *suite = suite_create("warp, exactly");
     TCase *tc = tcase_create("exact");
     tcase_add_loop_test(tc, the_identity_copies, first, end);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The pass across for SSE2. A vector of words holds four taps of each of two outputs, and pmaddwd weighs them. */
-#include <emmintrin.h>
+#include "common/intrinsics.h"
 
 #include "image/area_scale_row.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The inner loops for SSE2. A row of the window is 12 pixels in words, of which the last is set to zero. */
-#include <emmintrin.h>
+#include "common/intrinsics.h"
 #include <string.h>
 
 #include "motion/lucas_kanade_patch.h"

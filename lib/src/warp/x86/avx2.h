@@ -9,11 +9,10 @@
 
 #include <stdbool.h>
 
+#include "common/intrinsics.h"
 #include "warp/sample.h"
 
-#ifdef __AVX2__ /* so that it can be compiled alone on every machine */
-
-#include <immintrin.h>
+#if L1L2_AVX2 /* so that it can be compiled alone on every machine */
 
 /* The weights of two taps in the two words of each lane: for taps 0 and 1, 2 and 3, 4 and 5. */
 typedef struct Weights {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The generators for AVX2: eight positions at a time. */
-#include <immintrin.h>
+#include "common/intrinsics.h"
 
 #include "warp/coords_impl.h"
 

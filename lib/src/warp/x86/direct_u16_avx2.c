@@ -115,7 +115,8 @@ L1L2_INLINE __m256i first_shuffle(__m256i offset, const int components)
     const __m256i component = components == 1 ? _mm256_setzero_si256()
                             : components == 2 ? _mm256_setr_epi32(0, 2, 0, 2, 0, 2, 0, 2)
                                               : _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6);
-    const __m256i byte = _mm256_add_epi32(_mm256_slli_epi32(offset, components == 1 ? 1 : 2), component);
+    const __m256i two = _mm256_slli_epi32(offset, 1), four = _mm256_slli_epi32(offset, 2);
+    const __m256i byte = _mm256_add_epi32(components == 1 ? two : four, component);
     const __m256i twice = _mm256_or_si256(byte, _mm256_slli_epi32(byte, 8));
     const __m256i four_times = _mm256_or_si256(twice, _mm256_slli_epi32(twice, 16));
     return _mm256_add_epi8(four_times, _mm256_set1_epi32(0x100 | next << 16 | (next + 1) << 24));

@@ -15,7 +15,7 @@
 #include "warp/scanline_u8.h"
 #include "warp/x86/avx2.h"
 
-#ifdef __AVX2__ /* so that it can be compiled alone on every machine */
+#if L1L2_AVX2 /* so that it can be compiled alone on every machine */
 
 enum { LANES = 16 };
 

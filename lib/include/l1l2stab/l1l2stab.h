@@ -192,7 +192,8 @@ typedef enum L1L2StabOutputSize {
 typedef enum L1L2StabBorder {
     L1L2STAB_BORDER_CROP = 0,  /* it does not: what is shown is the crop window, zoomed to the output's size */
     L1L2STAB_BORDER_FILL = 1,  /* the whole frame is shown at its own scale, and neighboring frames fill what it lacks.
-                                * What no neighbor shows is extended. crop_ratio says how much room the path has */
+                                * What no neighbor shows is extended. crop_ratio says how much room the path has;
+                                * frames of which too much would be extended get less */
     L1L2STAB_BORDER_EXTEND = 2 /* the same without neighbors: the frame is mirrored at its sides, and softened */
 } L1L2StabBorder;
 

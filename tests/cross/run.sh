@@ -48,16 +48,16 @@ unshare --mount true 2>/dev/null || skip "unshare --mount is not allowed here"
 mirror=$("$top/.ci/debian-mirror.sh")
 [[ -n $mirror ]] || skip "this is not a Debian system with a mirror"
 
-# in_root COMMAND...: in a clean environment, with the tree in /tree and the build in /work. The mounts end with it.
+# in_root COMMAND...: in a clean environment, with the tree in /tree and the build in /cross. The mounts end with it.
 in_root() {
   # shellcheck disable=SC2016  # expanded by the inner shell
   unshare --mount --propagation private bash -euc '
     root=$1 tree=$2 work=$3
     shift 3
-    mkdir -p "$root/tree" "$root/work"
+    mkdir -p "$root/tree" "$root/cross"
     mount -t proc proc "$root/proc"
     mount --bind "$tree" "$root/tree"
-    mount --bind "$work" "$root/work"
+    mount --bind "$work" "$root/cross"
     exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp LC_ALL=C.UTF-8 \
       DEBIAN_FRONTEND=noninteractive CK_TIMEOUT_MULTIPLIER=40 "$@"' - "$root" "$top" "$work" "$@"
 }
@@ -101,8 +101,8 @@ cpu_family = '$cpu'
 cpu = '$cpu'
 endian = '$endian'
 INI
-  in_root meson setup --cross-file /work/cross.ini -Dplugin=false -Dsamples=false -Dpython=disabled \
-    /work/build /tree >"$work/setup.log" || die "meson could not configure, see $work/setup.log"
+  in_root meson setup --cross-file /cross/cross.ini -Dplugin=false -Dsamples=false -Dpython=disabled \
+    /cross/build /tree >"$work/setup.log" || die "meson could not configure, see $work/setup.log"
 }
 
 # clang is stricter than gcc with the intrinsics of NEON: an immediate operand must be a constant expression.
@@ -123,14 +123,14 @@ check_clang() {
 [[ -d $top/subprojects/$(sed -n 's/^directory *= *//p' "$top/subprojects/osqp.wrap") ]] ||
   "$top/subprojects/fetch-osqp.sh" >&2
 [[ -f $work/build/build.ninja ]] || configure
-in_root ninja --quiet -C /work/build >&2 || die "the build for $arch failed"
+in_root ninja --quiet -C /cross/build >&2 || die "the build for $arch failed"
 
 [[ $arch != arm64 ]] || check_clang
 
 log=$work/build/meson-logs/testlog.json
 rm -f "$log"
 status=0
-in_root meson test -C /work/build --no-rebuild --print-errorlogs --timeout-multiplier 40 "${test_options[@]}" \
+in_root meson test -C /cross/build --no-rebuild --print-errorlogs --timeout-multiplier 40 "${test_options[@]}" \
   </dev/null || status=$?
 python3 "$top/tests/totals.py" "$log" || status=1
 exit "$status"

@@ -1,42 +1,27 @@
 /* SPDX-License-Identifier: MIT */
 #include "neighbors_of.h"
 
-static int add(const L1L2FrameQueue *queue, int64_t t, const L1L2Mat *chain, const L1L2Geometry *geometry,
-               L1L2BorderNeighbor *neighbor)
-{
-    const L1L2QueuedFrame *record = l1l2_frame_queue_at(queue, t);
-    if (!record->frame.data[0])
-        return 0;
-    *neighbor = (L1L2BorderNeighbor){
-        .t = t,
-        .map = l1l2_mat_to_samples(l1l2_mat_rescale(*chain, geometry->diagonal_px), geometry->pixel_aspect),
-        .data = (const uint8_t *const *)record->frame.data,
-        .stride = record->frame.stride,
-    };
-    return 1;
-}
+#include "path/chain.h"
 
-/* F_t maps frame t to frame t - 1. So F_{k+1} ... F_t maps it to frame k, and the inverses lead to later frames. */
+_Static_assert((int)L1L2_BORDER_MAX_FRAMES <= (int)L1L2_PATH_MAX_REACH, "neighbors are farther away than chains reach");
+
 int l1l2_neighbors_of_oldest(const L1L2FrameQueue *queue, int reach, int64_t known_end, const L1L2Geometry *geometry,
                              L1L2BorderNeighbor *neighbors)
 {
-    const int64_t t = queue->begin;
+    L1L2PathLink links[2 * L1L2_PATH_MAX_REACH];
+    const int linked = l1l2_path_chain(l1l2_frame_queue_path_frames(queue), queue->begin, queue->kept, known_end, reach,
+                                       links);
     int count = 0;
-    L1L2Mat chain = l1l2_mat_identity(), inverse;
-    for (int64_t k = t - 1; k >= queue->kept && k >= t - reach; k--) {
-        const L1L2QueuedFrame *later = l1l2_frame_queue_at(queue, k + 1);
-        if (!later->path.linked)
-            break;
-        chain = l1l2_mat_mul(later->path.F, chain);
-        count += add(queue, k, &chain, geometry, &neighbors[count]);
-    }
-    chain = l1l2_mat_identity();
-    for (int64_t k = t + 1; k < known_end && k <= t + reach; k++) {
-        const L1L2QueuedFrame *record = l1l2_frame_queue_at(queue, k);
-        if (!record->path.linked || !l1l2_mat_inverse(record->path.F, &inverse))
-            break;
-        chain = l1l2_mat_mul(inverse, chain);
-        count += add(queue, k, &chain, geometry, &neighbors[count]);
+    for (int i = 0; i < linked; i++) {
+        const L1L2StabFrame *frame = &l1l2_frame_queue_at(queue, links[i].t)->frame;
+        if (!frame->data[0])
+            continue;
+        neighbors[count++] = (L1L2BorderNeighbor){
+            .t = links[i].t,
+            .map = l1l2_mat_to_samples(l1l2_mat_rescale(links[i].map, geometry->diagonal_px), geometry->pixel_aspect),
+            .data = (const uint8_t *const *)frame->data,
+            .stride = frame->stride,
+        };
     }
     return count;
 }

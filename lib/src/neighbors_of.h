@@ -13,8 +13,7 @@ typedef struct L1L2Geometry {
 } L1L2Geometry;
 
 /* Writes the neighbors of the oldest held frame, at most `reach` frames before and after it, and returns how many there
- * are: room for 2 reach is needed. They end where a path starts and where a motion is not known, since nothing says how
- * the frames beyond lie. known_end: frames from this number on have no motion yet. */
+ * are: room for 2 reach is needed (path/chain.h). known_end: frames from this number on have no motion yet. */
 int l1l2_neighbors_of_oldest(const L1L2FrameQueue *queue, int reach, int64_t known_end, const L1L2Geometry *geometry,
                              L1L2BorderNeighbor *neighbors);
 

@@ -46,14 +46,20 @@ def test_opencv_frames_are_stabilized(tmp_path):
     check('stabilize_opencv.py', tmp_path, 'cv2')
 
 
-def test_opencv_shows_a_whole_frame_and_who_gave_it(tmp_path):
-    cv2 = pytest.importorskip('cv2', reason='the Python package cv2 is not installed')
-    source, target = tmp_path / 'in.mp4', tmp_path / 'out.png'
+def four_pictures(cv2, sample, target):
+    """The four pictures of frame 30 that a sample puts into one, row by row."""
+    source = target.with_name('in.mp4')
     write_clip(source)
-    subprocess.run([sys.executable, SAMPLES / 'full_frame_opencv.py', source, target, '30'], check=True, timeout=100)
+    subprocess.run([sys.executable, SAMPLES / sample, source, target, '30'], check=True, timeout=100)
     made = cv2.imread(str(target))
     assert made.shape == (2 * conftest.HEIGHT, 2 * conftest.WIDTH, 3)
-    who = made[conftest.HEIGHT:, conftest.WIDTH:].astype(int)
+    rows = [made[:conftest.HEIGHT], made[conftest.HEIGHT:]]
+    return [half for row in rows for half in (row[:, :conftest.WIDTH], row[:, conftest.WIDTH:])]
+
+
+def test_opencv_shows_a_whole_frame_and_who_gave_it(tmp_path):
+    cv2 = pytest.importorskip('cv2', reason='the Python package cv2 is not installed')
+    who = four_pictures(cv2, 'full_frame_opencv.py', tmp_path / 'out.png')[3].astype(int)
     assert (abs(who[..., 0] - who[..., 2]) > 20).any(), 'no neighbor gave anything'
 
 
@@ -70,13 +76,7 @@ def zoom(cv2, first, second):
 
 def test_opencv_shows_a_frame_at_three_crop_ratios(tmp_path):
     cv2 = pytest.importorskip('cv2', reason='the Python package cv2 is not installed')
-    source, target = tmp_path / 'in.mp4', tmp_path / 'out.jpg'
-    write_clip(source)
-    subprocess.run([sys.executable, SAMPLES / 'crop_ratios_opencv.py', source, target, '30'], check=True, timeout=100)
-    made = cv2.imread(str(target))
-    assert made.shape == (2 * conftest.HEIGHT, 2 * conftest.WIDTH, 3)
-    rows = [made[:conftest.HEIGHT], made[conftest.HEIGHT:]]
-    filmed, *stabilized = [half for row in rows for half in (row[:, :conftest.WIDTH], row[:, conftest.WIDTH:])]
+    filmed, *stabilized = four_pictures(cv2, 'crop_ratios_opencv.py', tmp_path / 'out.jpg')
     for picture, ratio in zip(stabilized, (0.95, 0.9, 0.8)):
         assert zoom(cv2, filmed, picture) == pytest.approx(1 / ratio, rel=0.02)
 

@@ -67,8 +67,7 @@ typedef struct Search {
 
 static bool covers(const Search *search, int neighbor, const MissingPoint *point)
 {
-    const double *m = search->neighbors[neighbor].map.m; /* affine */
-    const L1L2Point p = point->at, at = {m[0] * p.x + m[1] * p.y + m[2], m[3] * p.x + m[4] * p.y + m[5]};
+    const L1L2Point at = l1l2_mat_apply_affine(&search->neighbors[neighbor].map, point->at);
     return inside(at, 0.5 * search->need->width - L1L2_BORDER_MARGIN_PX,
                   0.5 * search->need->height - L1L2_BORDER_MARGIN_PX);
 }

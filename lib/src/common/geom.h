@@ -58,6 +58,12 @@ L1L2Mat l1l2_mat_mul(L1L2Mat a, L1L2Mat b);
 bool l1l2_mat_inverse(L1L2Mat m, L1L2Mat *out);
 
 L1L2Point l1l2_mat_apply(const L1L2Mat *m, L1L2Point p);
+
+/* The same for affine maps, without the division. */
+static inline L1L2Point l1l2_mat_apply_affine(const L1L2Mat *m, L1L2Point p)
+{
+    return (L1L2Point){m->m[0] * p.x + m->m[1] * p.y + m->m[2], m->m[3] * p.x + m->m[4] * p.y + m->m[5]};
+}
 bool l1l2_mat_is_finite(const L1L2Mat *m);
 bool l1l2_mat_is_identity(const L1L2Mat *m);
 

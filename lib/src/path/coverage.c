@@ -14,17 +14,10 @@ static bool inside(const L1L2Coverage *coverage, L1L2Point p, double margin)
     return fabs(p.x) <= coverage->half_w - margin && fabs(p.y) <= coverage->half_h - margin;
 }
 
-/* The maps are affine. */
-static L1L2Point moved(const L1L2Mat *map, L1L2Point p)
-{
-    const double *m = map->m;
-    return (L1L2Point){m[0] * p.x + m[1] * p.y + m[2], m[3] * p.x + m[4] * p.y + m[5]};
-}
-
 static bool is_covered_by_neighbors(const L1L2Coverage *coverage, L1L2Point at)
 {
     for (int k = 0; k < coverage->count; k++)
-        if (inside(coverage, moved(&coverage->neighbor[k], at), coverage->margin))
+        if (inside(coverage, l1l2_mat_apply_affine(&coverage->neighbor[k].map, at), coverage->margin))
             return true;
     return false;
 }
@@ -36,7 +29,7 @@ double l1l2_coverage_lack(const L1L2Coverage *coverage, const L1L2Mat *B)
     int lacking = 0;
     for (int row = 0; row < LATTICE; row++) {
         const L1L2Point out = {0.5 * step_w - coverage->half_w, (row + 0.5) * step_h - coverage->half_h};
-        const L1L2Point start = moved(B, out);
+        const L1L2Point start = l1l2_mat_apply_affine(B, out);
         for (int column = 0; column < LATTICE; column++) {
             const L1L2Point at = {start.x + column * step.x, start.y + column * step.y};
             lacking += !inside(coverage, at, 0.0) && !is_covered_by_neighbors(coverage, at);

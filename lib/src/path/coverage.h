@@ -6,23 +6,20 @@
  * ends with the clip, or at a cut, there are none on one side, and a part of the output would have to be made up. The
  * path then gives way: its frame gets less room (path.c).
  *
- * The output is sampled by a lattice. A point is covered if B_t takes it inside frame t, or the chained motions take it
- * inside a neighbor: F_t maps frame t to frame t - 1, so F_{k+1} ... F_t maps it to frame k, and the inverses lead to
- * later frames. Unit: the frame's diagonal.
+ * The output is sampled by a lattice. A point is covered if B_t takes it inside frame t, or if chained motions take it
+ * on to the inside of a neighbor (chain.h). Unit: the frame's diagonal.
  */
 #ifndef L1L2_PATH_COVERAGE_H
 #define L1L2_PATH_COVERAGE_H
 
-#include "common/geom.h"
-
-enum { L1L2_COVERAGE_MAX_REACH = 120 }; /* neighbors are at most so many frames away */
+#include "path/chain.h"
 
 /* A frame and what its neighbors may show. */
 typedef struct L1L2Coverage {
     double half_w, half_h; /* of the frame */
     double margin;         /* at the sides of neighbors, not relied on */
     int count;
-    L1L2Mat neighbor[2 * L1L2_COVERAGE_MAX_REACH]; /* positions in the frame -> positions in each neighbor */
+    L1L2PathLink neighbor[2 * L1L2_PATH_MAX_REACH];
 } L1L2Coverage;
 
 /* The part of the output, [0, 1], that neither the frame nor a neighbor shows if its update transform is B. */

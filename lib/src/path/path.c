@@ -42,7 +42,7 @@ L1L2StabResult l1l2_path_create(L1L2Path **out, const L1L2PathConfig *cfg)
 {
     *out = NULL;
     assert(cfg->frames.rows >= cfg->window + L1L2_PATH_PAST && cfg->frames.rows >= cfg->window + cfg->fill_reach);
-    assert(cfg->fill_reach <= L1L2_COVERAGE_MAX_REACH);
+    assert(cfg->fill_reach <= L1L2_PATH_MAX_REACH);
     L1L2Path *path = l1l2_mem_new(1, sizeof *path);
     if (!path)
         return L1L2STAB_ERR_NOMEM;
@@ -248,24 +248,14 @@ static L1L2PathSolverReport solve_once(L1L2Path *path, const L1L2PathWindow *ste
 static bool set_coverage(L1L2Path *path, const L1L2PathWindow *step, int64_t frame)
 {
     const bool ended = step->emit == step->count || step->early;
-    const int64_t end = path->start + step->first + step->count, reach = path->cfg.fill_reach;
+    const int64_t end = path->start + step->first + step->count;
+    const int reach = path->cfg.fill_reach;
     const double diagonal = hypot(path->cfg.width, path->cfg.height);
     L1L2Coverage *coverage = path->coverage;
-    L1L2Mat chain = l1l2_mat_identity(), inverse;
     coverage->half_w = path->cfg.width / (2.0 * diagonal);
     coverage->half_h = path->cfg.height / (2.0 * diagonal);
     coverage->margin = path->cfg.fill_margin;
-    coverage->count = 0;
-    for (int64_t k = frame - 1; k >= path->start && k >= frame - reach && frame_at(path, k + 1)->linked; k--) {
-        chain = l1l2_mat_mul(frame_at(path, k + 1)->F, chain);
-        coverage->neighbor[coverage->count++] = chain;
-    }
-    chain = l1l2_mat_identity();
-    for (int64_t k = frame + 1; k < end && k <= frame + reach && frame_at(path, k)->linked; k++) {
-        l1l2_mat_inverse(frame_at(path, k)->F, &inverse);
-        chain = l1l2_mat_mul(inverse, chain);
-        coverage->neighbor[coverage->count++] = chain;
-    }
+    coverage->count = l1l2_path_chain(path->cfg.frames, frame, path->start, end, reach, coverage->neighbor);
     return ended || frame + reach < end;
 }
 

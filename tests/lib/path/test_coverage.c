@@ -35,7 +35,7 @@ START_TEST(a_neighbor_covers_what_it_shows_but_for_its_margin)
     L1L2Coverage coverage = alone();
     const L1L2Mat moved = right_by(0.1);
     coverage.count = 1;
-    coverage.neighbor[0] = right_by(-0.06);
+    coverage.neighbor[0].map = right_by(-0.06);
     ck_assert_double_eq_tol(l1l2_coverage_lack(&coverage, &moved), 0.04, 0.005);
     coverage.margin = 0.01 * 640 / diagonal_px;
     ck_assert_double_eq_tol(l1l2_coverage_lack(&coverage, &moved), 0.05, 0.005);
@@ -61,13 +61,13 @@ static double lack_of(const Setup *cfg, const Run *r, int t)
     L1L2Mat chain = l1l2_mat_identity(), inverse;
     for (int k = t - 1; k >= 0 && k >= t - REACH && !r->starts[k + 1]; k--) {
         chain = l1l2_mat_mul(r->out[k + 1].F, chain);
-        coverage.neighbor[coverage.count++] = chain;
+        coverage.neighbor[coverage.count++].map = chain;
     }
     chain = l1l2_mat_identity();
     for (int k = t + 1; k < r->frames && k <= t + REACH && !r->starts[k]; k++) {
         l1l2_mat_inverse(r->out[k].F, &inverse);
         chain = l1l2_mat_mul(inverse, chain);
-        coverage.neighbor[coverage.count++] = chain;
+        coverage.neighbor[coverage.count++].map = chain;
     }
     return l1l2_coverage_lack(&coverage, &r->out[t].B);
 }

@@ -3,7 +3,7 @@
 """Checks the text of files: check_style.py TREE | check_style.py --self-test
 
 No file has tabs, trailing blanks, control characters or Windows line ends. Each ends with a newline. A source file
-begins with the SPDX line, and its lines have at most 120 columns.
+begins with the SPDX line, and its lines have at most 120 columns. No file has a path that one machine alone has.
 """
 import re
 import sys
@@ -15,6 +15,7 @@ PLACES = ('.ci', 'docs', 'lib', 'packaging', 'plugin', 'samples', 'subprojects/p
 SOURCE = {'.c', '.cpp', '.h', '.py', '.sh'}
 TEXT = SOURCE | {'.html', '.md', '.build', '.map', '.pyi', '.toml', '.wrap', ''}
 SPDX = 'SPDX-License-Identifier: MIT'
+MACHINES_PATH = re.compile(r'(?<![\w.~$}\])>/-])/(?:home|root|work)\b')
 
 
 def line_faults(lines):
@@ -25,6 +26,8 @@ def line_faults(lines):
             yield number, 'a tab'
         if line != line.rstrip():
             yield number, 'trailing blanks'
+        if MACHINES_PATH.search(line):
+            yield number, 'a path of one machine'
 
 
 def faults(name, text):
@@ -63,10 +66,11 @@ def check(tree):
 def self_test():
     """Checks texts with known faults, which must all be found, and clean ones, which must pass."""
     head = f'/* {SPDX} */\n'
-    clean = head + 'int f(void)\n{\n    f();\n}\n'
+    clean = head + 'int f(void)\n{\n    f("$root/home", "a/work/b", "/homework");\n}\n'
     planted = [
         head + '\tint a;\n', head + 'int a; \n', head + 'int a;\r\n', head + 'int a;', 'int a;\n', '',
-        head + 'int \u200ba;\n', head + f'int {"a" * MAX_COLUMNS};\n',
+        head + 'int \u200ba;\n', head + f'/* see /{"home"}/me/clip */\n', head + f'run(" /{"work"}/build");\n',
+        head + f'int {"a" * MAX_COLUMNS};\n',
     ]
     missed = [text[:60] for text in planted if not list(faults('a.c', text))]
     false_alarms = list(faults('a.c', clean)) + list(faults('README.md', 'a ' * 70 + 'b\n'))

@@ -10,13 +10,13 @@
 #include "warp/functions.h"
 
 enum {
-    BAND = 24         /* how far beyond a strip pictures are compared, pixels of the gray picture */
+    BAND = 16         /* how far beyond a strip pictures are compared, pixels of the gray picture */
 };
 
 /* The blend at the side of a frame takes 1/160 of the longer side, and 4 pixels at least. */
 static const double seam_share = 1.0 / 160.0, least_seam_px = 4.0;
 /* Strips reach this far inside, so that offsets can be measured; in seams. */
-static const double strip_margin = 4.0;
+static const double strip_margin = 3.0;
 
 /* All that one source needs. */
 typedef struct Slot {
@@ -223,6 +223,7 @@ typedef struct RegistrationJob {
 static void set_displaced(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2BorderField *field, double to_x,
                           double to_y)
 {
+    const bool affine = l1l2_mat_is_affine(map);
     for (int row = 0; row < mesh->rows; row++)
         for (int column = 0; column < mesh->columns; column++) {
             const double u = (double)column / (mesh->columns - 1) * (field->columns - 1);
@@ -236,7 +237,8 @@ static void set_displaced(L1L2WarpMesh *mesh, const L1L2Mat *map, const L1L2Bord
             L1L2Point at = l1l2_warp_mesh_position(mesh, column, row);
             at.x += (above_x + y * (below_x - above_x)) * to_x;
             at.y += (above_y + y * (below_y - above_y)) * to_y;
-            mesh->node[row * mesh->columns + column] = l1l2_mat_apply(map, at);
+            mesh->node[row * mesh->columns + column] =
+                affine ? l1l2_mat_apply_affine(map, at) : l1l2_mat_apply(map, at);
         }
 }
 

@@ -7,12 +7,13 @@
 enum {
     RUN = L1L2_WARP_RUN_SAMPLES,
     BAND_ROWS = 16,
-    OFFSET_STEP = 2,     /* of each second sample in each second row, offsets are measured */
+    OFFSET_STEP = 2,     /* of each second sample in some rows, offsets are measured */
+    OFFSET_ROWS = 16,    /* as many rows from node to node, but every second one at most */
     SOFTEST = 3          /* samples: the radius of the mean that the extension takes */
 };
 
 /* The band in which offsets are measured, in seams. */
-static const double offset_band = 3.0;
+static const double offset_band = 2.0;
 /* The samples with no difference that are assumed around each node. */
 static const double offset_prior = 1.0;
 /* Larger differences, in parts of the range, are not of light but of things. */
@@ -64,17 +65,51 @@ static int read_component(const Plane *plane, const uint8_t *row, int u, int com
     return plane->bytes == 1 ? *p : (p[0] | p[1] << 8) >> plane->shift;
 }
 
-static void write_component(const Plane *plane, uint8_t *row, int u, int component, float value)
+/* A run of samples of one row. */
+typedef struct Run {
+    const Plane *plane;
+    int u, v, count;    /* its first sample, its row, and how many */
+} Run;
+
+static void read_run(const Run *run, const uint8_t *data, ptrdiff_t stride, int component, float *level)
 {
-    uint8_t *p = row + (u * plane->components + component) * plane->bytes;
-    const int level = (int)(value + 0.5f), cut = level < 0 ? 0 : level > plane->most ? plane->most : level;
+    const Plane *plane = run->plane;
+    const uint8_t *row = data + run->v * stride;
     if (plane->bytes == 1) {
-        *p = (uint8_t)cut;
+        const uint8_t *p = row + run->u * plane->components + component;
+        if (plane->components == 1)
+            for (int i = 0; i < run->count; i++)
+                level[i] = (float)p[i];
+        else
+            for (int i = 0; i < run->count; i++)
+                level[i] = (float)p[i * plane->components];
         return;
     }
-    const int stored = cut << plane->shift;
-    p[0] = (uint8_t)stored;
-    p[1] = (uint8_t)(stored >> 8);
+    for (int i = 0; i < run->count; i++)
+        level[i] = (float)read_component(plane, row, run->u + i, component);
+}
+
+static void write_run(const Run *run, uint8_t *data, ptrdiff_t stride, int component, const float *level)
+{
+    const Plane *plane = run->plane;
+    const float most = (float)plane->most;
+    uint8_t *p = data + run->v * stride + (run->u * plane->components + component) * plane->bytes;
+    const int step = plane->components * plane->bytes, shift = plane->shift;
+    int32_t stored[RUN];
+    for (int i = 0; i < run->count; i++) {
+        const float cut = level[i] < 0.0f ? 0.0f : level[i] > most ? most : level[i];
+        stored[i] = (int32_t)(cut + 0.5f) << shift;
+    }
+    if (step == 1) {
+        for (int i = 0; i < run->count; i++)
+            p[i] = (uint8_t)stored[i];
+        return;
+    }
+    for (int i = 0; i < run->count; i++) {
+        p[i * step] = (uint8_t)stored[i];
+        if (plane->bytes == 2)
+            p[i * step + 1] = (uint8_t)(stored[i] >> 8);
+    }
 }
 
 /* Positions of a run in a layer's plane, in phases, and how deep inside the layer's frame they are, in pixels. */
@@ -103,12 +138,6 @@ static void find_positions(const Plane *plane, const L1L2WarpMesh *mesh, int u, 
         const float across = (float)x * to_x, down = (float)y * to_y;
         at->depth[i] = across < down ? across : down;
     }
-}
-
-static float weight_at(const Plane *plane, float depth)
-{
-    const float x = (depth - (float)rim_px) / (float)plane->composite->seam;
-    return x <= 0.0f ? 0.0f : x >= 1.0f ? 1.0f : x * x * (3.0f - 2.0f * x);
 }
 
 /* The nearest node of the grid, or its fractional index. */
@@ -140,23 +169,32 @@ typedef struct NodeSum {
 
 enum { MAX_NODES = L1L2_BORDER_GRAY_SIDE / L1L2_BORDER_NODE_PX + 2 }; /* along an axis */
 
-static void sum_run(const Plane *plane, const L1L2BorderSource *source, int u, int v, int count, NodeSum *sums)
+/* Adds the differences of a run to those of a row of nodes. */
+static void sum_run(const Run *run, const L1L2BorderSource *source, NodeSum *nodes)
 {
+    const Plane *plane = run->plane;
     const L1L2BorderComposite *c = plane->composite;
+    const float rim = (float)rim_px, inner = (float)(offset_band * c->seam);
+    const float scale = (float)(source->field.columns - 1) / (float)plane->width;
+    const int limit = (int)(largest_offset * plane->most);
+    const uint8_t *mine = c->dst[plane->index] + run->v * c->dst_stride[plane->index];
+    const uint8_t *theirs = source->data[plane->index] + run->v * source->stride[plane->index];
     Positions own, other;
-    const uint8_t *mine = c->dst[plane->index] + v * c->dst_stride[plane->index];
-    const uint8_t *theirs = source->data[plane->index] + v * source->stride[plane->index];
-    const int columns = source->field.columns, limit = (int)(largest_offset * plane->most);
-    const int row = (int)(node_index(v, plane->height, source->field.rows) + 0.5);
-    find_positions(plane, c->own.mesh, u, v, count, &own);
-    find_positions(plane, source->mesh, u, v, count, &other);
-    for (int i = 0; i < count; i += OFFSET_STEP) {
-        if (own.depth[i] < rim_px || own.depth[i] > offset_band * c->seam || other.depth[i] < rim_px)
+    int near = 0;
+    find_positions(plane, c->own.mesh, run->u, run->v, run->count, &own);
+    for (int i = 0; i < run->count; i++)
+        near += (own.depth[i] >= rim) & (own.depth[i] <= inner);
+    if (near == 0)
+        return;
+    find_positions(plane, source->mesh, run->u, run->v, run->count, &other);
+    for (int i = 0; i < run->count; i += OFFSET_STEP) {
+        if (own.depth[i] < rim || own.depth[i] > inner || other.depth[i] < rim)
             continue;
-        NodeSum *node = &sums[row * columns + (int)(node_index(u + i, plane->width, columns) + 0.5)];
+        const int u = run->u + i;
+        NodeSum *node = &nodes[(int)(((float)u + 0.5f) * scale + 0.5f)];
         int difference[L1L2_BORDER_COMPONENTS], largest = 0;
         for (int k = 0; k < plane->components; k++) {
-            difference[k] = read_component(plane, mine, u + i, k) - read_component(plane, theirs, u + i, k);
+            difference[k] = read_component(plane, mine, u, k) - read_component(plane, theirs, u, k);
             const int size = difference[k] < 0 ? -difference[k] : difference[k];
             largest = size > largest ? size : largest;
         }
@@ -193,13 +231,19 @@ static void measure_offsets(void *context, int index)
     const Plane *plane = &job->plane[index % c->format->planes];
     const L1L2BorderSource *source = &c->source[index / c->format->planes];
     const int nodes = source->field.columns * source->field.rows;
+    const int from_node_to_node = plane->height / (source->field.rows - 1) / OFFSET_ROWS;
+    const int step = from_node_to_node > OFFSET_STEP ? from_node_to_node : OFFSET_STEP;
     NodeSum sums[MAX_NODES * MAX_NODES];
     memset(sums, 0, (size_t)nodes * sizeof *sums);
     for (int k = 0; k < L1L2_BORDER_STRIPS; k++) {
         const L1L2WarpRect strip = l1l2_warp_rect_samples(&source->part.rect[k], plane->log2_sub_x, plane->log2_sub_y);
-        for (int v = strip.top; v < strip.bottom; v += OFFSET_STEP)
-            for (int u = strip.left; u < strip.right; u += RUN)
-                sum_run(plane, source, u, v, strip.right - u < RUN ? strip.right - u : RUN, sums);
+        for (int v = strip.top; v < strip.bottom; v += step) {
+            const int row = (int)(node_index(v, plane->height, source->field.rows) + 0.5);
+            for (int u = strip.left; u < strip.right; u += RUN) {
+                const Run run = {plane, u, v, strip.right - u < RUN ? strip.right - u : RUN};
+                sum_run(&run, source, sums + row * source->field.columns);
+            }
+        }
     }
     for (int k = 0; k < plane->components; k++)
         spread(&source->field, sums, k, source->offset + (plane->first_component + k) * nodes);
@@ -207,28 +251,89 @@ static void measure_offsets(void *context, int index)
 
 /* ---- Painting ---- */
 
-/* A row of samples, with what the grids say along it. */
-typedef struct Row {
-    const Plane *plane;
-    int v, strip;
-    int from[L1L2_BORDER_MAX_SOURCES], end[L1L2_BORDER_MAX_SOURCES]; /* of the run: where each source is rendered */
-    float agreement[L1L2_BORDER_MAX_SOURCES][MAX_NODES];
-    float offset[L1L2_BORDER_MAX_SOURCES][L1L2_BORDER_COMPONENTS][MAX_NODES];
-} Row;
+/* A run of samples of one row that is put together, from the front to the back. All arrays are one entry a sample. */
+typedef struct Blend {
+    float mine[RUN];                         /* the weight of the frame itself */
+    float value[L1L2_BORDER_COMPONENTS][RUN]; /* of the layers so far, without the frame itself */
+    float rest[RUN];                         /* what they have left */
+    float most[RUN];                         /* the largest weight of them */
+    int32_t provider[RUN];                   /* whose weight it is */
+    struct {                                 /* the same as if all sources agreed with the frame */
+        float value[L1L2_BORDER_COMPONENTS][RUN], rest[RUN];
+        int32_t provider[RUN];               /* the nearest one */
+    } trusting;
+} Blend;
 
-static void begin_row(Row *row, const Plane *plane, int v)
+/* What a row of nodes says at each sample: linear from node to node. */
+static void interpolate_run(const float *nodes, int columns, const Run *run, float *out)
 {
-    const L1L2BorderComposite *c = plane->composite;
-    row->plane = plane;
-    row->v = v;
-    for (int s = 0; s < c->sources; s++) {
-        const L1L2BorderSource *source = &c->source[s];
-        const int nodes = source->field.columns * source->field.rows;
-        const double at = node_index(v, plane->height, source->field.rows);
-        interpolate_row(source->field.agreement, &source->field, at, row->agreement[s]);
-        for (int k = 0; k < plane->components; k++)
-            interpolate_row(source->offset + (plane->first_component + k) * nodes, &source->field, at,
-                            row->offset[s][k]);
+    const float scale = (float)(columns - 1) / (float)run->plane->width;
+    for (int i = 0; i < run->count;) {
+        const int node = (int)(((float)(run->u + i) + 0.5f) * scale);
+        const float from = nodes[node], step = nodes[node + 1] - from;
+        const int beyond = (int)ceilf((float)(node + 1) / scale - 0.5f) - run->u;
+        const int end = beyond <= i ? i + 1 : beyond < run->count ? beyond : run->count;
+        for (; i < end; i++)
+            out[i] = from + (((float)(run->u + i) + 0.5f) * scale - (float)node) * step;
+    }
+}
+
+static void weights_of(const Plane *plane, const float *depth, int count, float *weight)
+{
+    const float rim = (float)rim_px, seam = (float)plane->composite->seam;
+    for (int i = 0; i < count; i++) {
+        const float x = (depth[i] - rim) / seam, cut = x < 0.0f ? 0.0f : x > 1.0f ? 1.0f : x;
+        weight[i] = cut * cut * (3.0f - 2.0f * cut);
+    }
+}
+
+static void begin(Blend *blend, const Run *run, const float *depth)
+{
+    weights_of(run->plane, depth, run->count, blend->mine);
+    memset(blend->value, 0, (size_t)run->plane->components * sizeof blend->value[0]);
+    memset(blend->trusting.value, 0, (size_t)run->plane->components * sizeof blend->trusting.value[0]);
+    for (int i = 0; i < run->count; i++) {
+        blend->rest[i] = 1.0f - blend->mine[i];
+        blend->most[i] = blend->mine[i];
+        blend->provider[i] = L1L2_BORDER_OWN;
+        blend->trusting.rest[i] = 1.0f;
+        blend->trusting.provider[i] = L1L2_BORDER_OWN;
+    }
+}
+
+/* Adds a source to the samples from blend's `first` on. agreement, offset: rows of the grid at the run's row. */
+static void add_source(Blend *blend, int first, const Run *run, const L1L2BorderSource *source, const float *depth,
+                       const float *agreement, float offset[][MAX_NODES])
+{
+    const Plane *plane = run->plane;
+    const int count = run->count, columns = source->field.columns;
+    const int32_t provider = L1L2_BORDER_NEIGHBOR + source->distance;
+    float weight[RUN], trusted[RUN], part[RUN], level[RUN];
+    weights_of(plane, depth, count, trusted);
+    interpolate_run(agreement, columns, run, weight);
+    float *rest = blend->rest + first, *most = blend->most + first, *trusting = blend->trusting.rest + first;
+    int32_t *whose = blend->provider + first, *nearest = blend->trusting.provider + first;
+    for (int i = 0; i < count; i++)
+        nearest[i] = (nearest[i] == L1L2_BORDER_OWN) & (trusted[i] > 0.0f) ? provider : nearest[i];
+    for (int i = 0; i < count; i++) {
+        weight[i] *= trusted[i] * rest[i];
+        trusted[i] *= trusting[i];
+        rest[i] -= weight[i];
+        trusting[i] -= trusted[i];
+    }
+    for (int i = 0; i < count; i++)
+        whose[i] = weight[i] > most[i] ? provider : whose[i];
+    for (int i = 0; i < count; i++)
+        most[i] = weight[i] > most[i] ? weight[i] : most[i];
+    for (int k = 0; k < plane->components; k++) {
+        read_run(run, source->data[plane->index], source->stride[plane->index], k, level);
+        interpolate_run(offset[k], columns, run, part);
+        float *value = blend->value[k] + first, *trusting_value = blend->trusting.value[k] + first;
+        for (int i = 0; i < count; i++) {
+            const float shown = level[i] + part[i];
+            value[i] += weight[i] * shown;
+            trusting_value[i] += trusted[i] * shown;
+        }
     }
 }
 
@@ -256,130 +361,123 @@ static void extend(const Plane *plane, int32_t x, int32_t y, float depth, float 
         value[k] = (float)sum[k] / (float)((2 * radius + 1) * (2 * radius + 1));
 }
 
-static void note_provider(const Row *row, int u, int provider)
+/* Outside the frame, the sources share what they left. Where hardly any agrees with the frame, the nearest is shown all
+ * the same: something real, if perhaps at the wrong place. Where there is none, it is extended. */
+static void fill_rest(Blend *blend, const Run *run, const Positions *own, int first)
 {
-    const Plane *plane = row->plane;
+    const Plane *plane = run->plane;
+    for (int k = 0; k < plane->components; k++) {
+        float *value = blend->value[k];
+        const float *trusting = blend->trusting.value[k];
+        for (int i = 0; i < run->count; i++) {
+            const float rest = blend->rest[i], covered = 1.0f - blend->trusting.rest[i], doubt = doubt_weight * rest;
+            const float divisor = covered > least_weight ? covered : least_weight;
+            const float shared = (value[i] + doubt * trusting[i] / divisor) / (1.0f - rest + doubt);
+            value[i] = own->depth[first + i] < 0.0f && covered >= least_weight ? shared : value[i];
+        }
+    }
+    for (int i = 0; i < run->count; i++) {
+        const float rest = blend->rest[i];
+        if (own->depth[first + i] >= 0.0f || rest == 0.0f)
+            continue;
+        if (1.0f - blend->trusting.rest[i] >= least_weight) {
+            if (1.0f - rest < doubt_weight * rest)
+                blend->provider[i] = blend->trusting.provider[i];
+            continue;
+        }
+        float extension[L1L2_BORDER_COMPONENTS];
+        extend(plane, own->x[first + i], own->y[first + i], own->depth[first + i], extension);
+        for (int k = 0; k < plane->components; k++)
+            blend->value[k][i] += rest * extension[k];
+        blend->provider[i] = L1L2_BORDER_EXTENDED;
+    }
+}
+
+/* Adds the frame itself, which is in the output. Inside, it takes what the sources leave. */
+static void add_own(Blend *blend, const Run *run, const float *depth)
+{
+    const Plane *plane = run->plane;
+    const L1L2BorderComposite *c = plane->composite;
+    float keeps[RUN], level[RUN];
+    for (int i = 0; i < run->count; i++) {
+        keeps[i] = depth[i] < 0.0f ? 0.0f : blend->mine[i] + blend->rest[i];
+        blend->provider[i] = keeps[i] > blend->most[i] ? L1L2_BORDER_OWN : blend->provider[i];
+    }
+    for (int k = 0; k < plane->components; k++) {
+        read_run(run, c->dst[plane->index], c->dst_stride[plane->index], k, level);
+        for (int i = 0; i < run->count; i++)
+            level[i] = blend->value[k][i] + keeps[i] * level[i];
+        write_run(run, c->dst[plane->index], c->dst_stride[plane->index], k, level);
+    }
+}
+
+static void note_providers(const Blend *blend, const Run *run)
+{
+    const Plane *plane = run->plane;
     const L1L2BorderComposite *c = plane->composite;
     if (plane->index != 0)
         return;
-    for (int x = u << plane->log2_sub_x; x < (u + 1) << plane->log2_sub_x && x < c->width; x++)
-        c->provider[row->v * c->width + x] = (uint8_t)provider;
-}
-
-/* A sample that is being put together. */
-typedef struct Blend {
-    float value[L1L2_BORDER_COMPONENTS]; /* of the layers so far, without the frame itself */
-    float rest;                          /* what they have left */
-    float most;                          /* the largest weight of them */
-    int provider;                        /* whose weight it is */
-    struct {                             /* the same as if all sources agreed with the frame */
-        float value[L1L2_BORDER_COMPONENTS], rest;
-        int provider;                    /* the nearest one */
-    } trusting;
-} Blend;
-
-/* Adds a source that has `weight` at a sample. */
-static void add_source(const Row *row, int index, int sample, float weight, Blend *blend)
-{
-    if (weight == 0.0f)
-        return;
-    const Plane *plane = row->plane;
-    const L1L2BorderSource *source = &plane->composite->source[index];
-    const float at = (float)node_index(sample, plane->width, source->field.columns);
-    const int node = (int)at;
-    const float part = at - (float)node, *agreement = row->agreement[index] + node;
-    const uint8_t *picture = source->data[plane->index] + row->v * source->stride[plane->index];
-    const float trusting = weight * blend->trusting.rest;
-    weight *= blend->rest * (agreement[0] + part * (agreement[1] - agreement[0]));
-    for (int k = 0; k < plane->components; k++) {
-        const float *offset = row->offset[index][k] + node, add = offset[0] + part * (offset[1] - offset[0]);
-        const float value = (float)read_component(plane, picture, sample, k) + add;
-        blend->value[k] += weight * value;
-        blend->trusting.value[k] += trusting * value;
-    }
-    blend->rest -= weight;
-    if (blend->trusting.rest == 1.0f)
-        blend->trusting.provider = L1L2_BORDER_NEIGHBOR + source->distance;
-    blend->trusting.rest -= trusting;
-    if (weight > blend->most) {
-        blend->most = weight;
-        blend->provider = L1L2_BORDER_NEIGHBOR + source->distance;
-    }
-}
-
-/* Outside the frame, the sources share what they left. Where hardly any agrees with the frame, the nearest is shown all
- * the same: something real, if perhaps at the wrong place. Where there is none, it is extended. */
-static void fill_rest(const Plane *plane, const Positions *own, int i, Blend *blend)
-{
-    if (blend->rest == 0.0f)
-        return;
-    const float agreed = 1.0f - blend->rest, covered = 1.0f - blend->trusting.rest, doubt = doubt_weight * blend->rest;
-    if (covered >= least_weight) {
-        for (int k = 0; k < plane->components; k++)
-            blend->value[k] = (blend->value[k] + doubt * blend->trusting.value[k] / covered) / (agreed + doubt);
-        if (agreed < doubt)
-            blend->provider = blend->trusting.provider;
+    uint8_t *row = c->provider + run->v * c->width;
+    if (plane->log2_sub_x == 0) {
+        for (int i = 0; i < run->count; i++)
+            row[run->u + i] = (uint8_t)blend->provider[i];
         return;
     }
-    float extension[L1L2_BORDER_COMPONENTS];
-    extend(plane, own->x[i], own->y[i], own->depth[i], extension);
-    for (int k = 0; k < plane->components; k++)
-        blend->value[k] += blend->rest * extension[k];
-    blend->provider = L1L2_BORDER_EXTENDED;
+    for (int i = 0; i < run->count; i++)
+        for (int x = (run->u + i) << plane->log2_sub_x; x < (run->u + i + 1) << plane->log2_sub_x && x < c->width; x++)
+            row[x] = (uint8_t)blend->provider[i];
 }
 
-/* Paints sample u + i of the run. Inside the frame, the frame takes what the sources leave. */
-static void paint(const Row *row, int u, int i, const Positions *own, const Positions *other)
+/* What the grids say along a row of samples. */
+typedef struct GridRow {
+    float agreement[L1L2_BORDER_MAX_SOURCES][MAX_NODES];
+    float offset[L1L2_BORDER_MAX_SOURCES][L1L2_BORDER_COMPONENTS][MAX_NODES];
+} GridRow;
+
+static void begin_row(GridRow *row, const Plane *plane, int v)
 {
-    const Plane *plane = row->plane;
     const L1L2BorderComposite *c = plane->composite;
-    const int sample = u + i;
-    uint8_t *out = c->dst[plane->index] + row->v * c->dst_stride[plane->index];
-    const float mine = weight_at(plane, own->depth[i]);
-    Blend blend = {.rest = 1.0f - mine, .most = mine, .provider = L1L2_BORDER_OWN, .trusting = {.rest = 1.0f}};
-    for (int s = 0; s < c->sources && blend.rest > 0.0f; s++)
-        if (i >= row->from[s] && i < row->end[s])
-            add_source(row, s, sample, weight_at(plane, other[s].depth[i - row->from[s]]), &blend);
-    float keeps = 0.0f;
-    if (own->depth[i] < 0.0f) {
-        fill_rest(plane, own, i, &blend);
-    } else {
-        keeps = mine + blend.rest;
-        if (keeps > blend.most)
-            blend.provider = L1L2_BORDER_OWN;
-    }
-    for (int k = 0; k < plane->components; k++)
-        write_component(plane, out, sample, k,
-                        blend.value[k] + keeps * (float)read_component(plane, out, sample, k));
-    note_provider(row, sample, blend.provider);
-}
-
-static void paint_run(Row *row, int u, int count)
-{
-    const Plane *plane = row->plane;
-    const L1L2BorderComposite *c = plane->composite;
-    Positions own, other[L1L2_BORDER_MAX_SOURCES];
-    int first = count, end = 0;
-    find_positions(plane, c->own.mesh, u, row->v, count, &own);
-    for (int i = 0; i < count; i++)
-        if (own.depth[i] < (float)(rim_px + c->seam)) {
-            first = i < first ? i : first;
-            end = i + 1;
-        }
-    if (first >= end)
-        return;
     for (int s = 0; s < c->sources; s++) {
-        const L1L2WarpRect *pixels = &c->source[s].part.rect[row->strip];
-        const L1L2WarpRect part = l1l2_warp_rect_samples(pixels, plane->log2_sub_x, plane->log2_sub_y);
-        const int from = part.left - u > first ? part.left - u : first;
-        row->from[s] = from;
-        row->end[s] = row->v < part.top || row->v >= part.bottom ? 0 : part.right - u < end ? part.right - u : end;
-        if (from < row->end[s])
-            find_positions(plane, c->source[s].mesh, u + from, row->v, row->end[s] - from, &other[s]);
+        const L1L2BorderSource *source = &c->source[s];
+        const int nodes = source->field.columns * source->field.rows;
+        const double at = node_index(v, plane->height, source->field.rows);
+        interpolate_row(source->field.agreement, &source->field, at, row->agreement[s]);
+        for (int k = 0; k < plane->components; k++)
+            interpolate_row(source->offset + (plane->first_component + k) * nodes, &source->field, at,
+                            row->offset[s][k]);
     }
-    for (int i = first; i < end; i++)
-        if (own.depth[i] < (float)(rim_px + c->seam))
-            paint(row, u, i, &own, other);
+}
+
+/* Paints a run of a strip, but for its ends that are farther inside the frame than the seam. */
+static void paint_run(GridRow *row, const Run *whole, int strip)
+{
+    const Plane *plane = whole->plane;
+    const L1L2BorderComposite *c = plane->composite;
+    const float inside = (float)(rim_px + c->seam);
+    Positions own, other;
+    find_positions(plane, c->own.mesh, whole->u, whole->v, whole->count, &own);
+    int first = 0, end = whole->count;
+    for (; first < end && own.depth[first] >= inside; first++) {}
+    for (; first < end && own.depth[end - 1] >= inside; end--) {}
+    if (first == end)
+        return;
+    const Run part = {plane, whole->u + first, whole->v, end - first};
+    Blend blend;
+    begin(&blend, &part, own.depth + first);
+    for (int s = 0; s < c->sources; s++) {
+        const L1L2WarpRect *pixels = &c->source[s].part.rect[strip];
+        const L1L2WarpRect shown = l1l2_warp_rect_samples(pixels, plane->log2_sub_x, plane->log2_sub_y);
+        const int left = shown.left > part.u ? shown.left : part.u;
+        const int right = shown.right < part.u + part.count ? shown.right : part.u + part.count;
+        if (left >= right || part.v < shown.top || part.v >= shown.bottom)
+            continue;
+        const Run run = {plane, left, part.v, right - left};
+        find_positions(plane, c->source[s].mesh, run.u, run.v, run.count, &other);
+        add_source(&blend, left - part.u, &run, &c->source[s], other.depth, row->agreement[s], row->offset[s]);
+    }
+    fill_rest(&blend, &part, &own, first);
+    add_own(&blend, &part, own.depth + first);
+    note_providers(&blend, &part);
 }
 
 typedef struct PaintJob {
@@ -399,12 +497,14 @@ static void paint_band(void *context, int index)
         index -= job->piece[piece].bands;
     const L1L2WarpRect *part = &job->piece[piece].part;
     const int top = part->top + index * BAND_ROWS;
-    Row row;
+    const Plane *plane = &job->plane[job->piece[piece].plane];
+    GridRow row;
     for (int v = top; v < part->bottom && v < top + BAND_ROWS; v++) {
-        begin_row(&row, &job->plane[job->piece[piece].plane], v);
-        row.strip = piece % L1L2_BORDER_STRIPS;
-        for (int u = part->left; u < part->right; u += RUN)
-            paint_run(&row, u, part->right - u < RUN ? part->right - u : RUN);
+        begin_row(&row, plane, v);
+        for (int u = part->left; u < part->right; u += RUN) {
+            const Run run = {plane, u, v, part->right - u < RUN ? part->right - u : RUN};
+            paint_run(&row, &run, piece % L1L2_BORDER_STRIPS);
+        }
     }
 }
 

@@ -10,7 +10,10 @@
 enum {
     LEVELS = 2,          /* the picture, and half its size */
     PATCH = 10,          /* a patch reaches this far from its node, pixels of its level */
-    PIXELS = (2 * PATCH + 1) * (2 * PATCH + 1),
+    SIDE = 2 * PATCH + 1,
+    LANES = 24,          /* of a row of a patch: its pixels, and some that are never known, for the vectors' sake */
+    ROWS = PATCH + 1,    /* every second row is taken: all of them give the same displacements in twice the time */
+    ENOUGH = ROWS * SIDE / 4,
     ITERATIONS = 5,
     REACH = 8            /* a displacement is at most so many pixels of its level */
 };
@@ -73,19 +76,26 @@ void l1l2_border_registration_free(L1L2BorderRegistration *r)
     l1l2_mem_free(r);
 }
 
+/* Bilinear, at a position with all four pixels around it. */
+static inline float level_at(const uint8_t *level, int width, float x, float y)
+{
+    const int left = (int)x, top = (int)y;
+    const float fx = x - (float)left, fy = y - (float)top;
+    const uint8_t *p = level + top * width + left;
+    const float above = p[0] + fx * (float)(p[1] - p[0]), below = p[width] + fx * (float)(p[width + 1] - p[width]);
+    return above + fy * (below - above);
+}
+
 /* Bilinear, with the edge repeated within half a pixel; < 0 outside. */
 static inline float gray_at(const L1L2BorderGray *gray, int width, int height, float x, float y)
 {
     if (!(x >= -0.5f && y >= -0.5f && x <= (float)width - 0.5f && y <= (float)height - 0.5f))
         return -1.0f;
-    x = x < 0.0f ? 0.0f : x;
-    y = y < 0.0f ? 0.0f : y;
-    const int left = x >= (float)(width - 1) ? width - 2 : (int)x, top = y >= (float)(height - 1) ? height - 2 : (int)y;
-    const float over_x = x - (float)left, over_y = y - (float)top;
-    const float fx = over_x > 1.0f ? 1.0f : over_x, fy = over_y > 1.0f ? 1.0f : over_y;
-    const uint8_t *p = gray->level + top * width + left;
-    const float above = p[0] + fx * (float)(p[1] - p[0]), below = p[width] + fx * (float)(p[width + 1] - p[width]);
-    return above + fy * (below - above);
+    /* Short of the last pixel by less than a float can tell from it at 480 pixels, so that there is one after it. */
+    const float right = (float)(width - 1) * (1.0f - 1e-6f), bottom = (float)(height - 1) * (1.0f - 1e-6f);
+    x = x < 0.0f ? 0.0f : x > right ? right : x;
+    y = y < 0.0f ? 0.0f : y > bottom ? bottom : y;
+    return level_at(gray->level, width, x, y);
 }
 
 typedef struct MeshRow {
@@ -102,25 +112,49 @@ static MeshRow mesh_cell(const L1L2WarpMesh *mesh, int column, double row)
     return (MeshRow){left, {right.x - left.x, right.y - left.y}};
 }
 
+/* A straight piece of a row of a view: pixel i is at from + ((i + 0.5) columns - cell) step of the gray picture. */
+typedef struct Piece {
+    int first, end, cell;
+    double columns;
+    float from_x, from_y, step_x, step_y;
+} Piece;
+
+static bool is_well_inside(const Piece *piece, int i, int width, int height)
+{
+    const float part = (float)((i + 0.5) * piece->columns) - (float)piece->cell;
+    const float x = piece->from_x + part * piece->step_x, y = piece->from_y + part * piece->step_y;
+    return x >= 0.0f && y >= 0.0f && x < (float)(width - 1) && y < (float)(height - 1);
+}
+
+static void view_piece(const L1L2BorderView *view, const L1L2BorderGray *gray, const Piece *piece, float *row)
+{
+    const int width = view->width, height = view->height;
+    const bool inside = is_well_inside(piece, piece->first, width, height) &&
+                        is_well_inside(piece, piece->end - 1, width, height);
+    for (int i = piece->first; i < piece->end; i++) {
+        const float part = (float)((i + 0.5) * piece->columns) - (float)piece->cell;
+        const float x = piece->from_x + part * piece->step_x, y = piece->from_y + part * piece->step_y;
+        row[i] = inside ? level_at(gray->level, width, x, y) : gray_at(gray, width, height, x, y);
+    }
+}
+
 static void view_row(const L1L2BorderView *view, const L1L2BorderGray *gray, const L1L2WarpMesh *mesh, int j, int first,
                      int end)
 {
     const double to_x = (double)view->width / mesh->width, to_y = (double)view->height / mesh->height;
     const double row = (j + 0.5) / view->height * (mesh->rows - 1);
-    const double columns = (double)(mesh->columns - 1) / view->width;
-    int cell = -1;
-    float from_x = 0.0f, from_y = 0.0f, step_x = 0.0f, step_y = 0.0f;
-    for (int i = first; i < end; i++) {
-        const float at = (float)((i + 0.5) * columns);
-        if ((int)at != cell) {
-            cell = (int)at < mesh->columns - 1 ? (int)at : mesh->columns - 2;
-            const MeshRow run = mesh_cell(mesh, cell, row);
-            from_x = (float)(run.from.x * to_x + 0.5 * view->width - 0.5), step_x = (float)(run.step.x * to_x);
-            from_y = (float)(run.from.y * to_y + 0.5 * view->height - 0.5), step_y = (float)(run.step.y * to_y);
-        }
-        const float part = at - (float)cell;
-        view->level[j * view->width + i] = gray_at(gray, view->width, view->height, from_x + part * step_x,
-                                                   from_y + part * step_y);
+    Piece piece = {.columns = (double)(mesh->columns - 1) / view->width};
+    for (piece.first = first; piece.first < end; piece.first = piece.end) {
+        const int at = (int)((piece.first + 0.5) * piece.columns);
+        piece.cell = at < mesh->columns - 1 ? at : mesh->columns - 2;
+        const int beyond = (int)ceil((piece.cell + 1) / piece.columns - 0.5);
+        piece.end = beyond <= piece.first ? piece.first + 1 : beyond < end ? beyond : end;
+        const MeshRow run = mesh_cell(mesh, piece.cell, row);
+        piece.from_x = (float)(run.from.x * to_x + 0.5 * view->width - 0.5);
+        piece.from_y = (float)(run.from.y * to_y + 0.5 * view->height - 0.5);
+        piece.step_x = (float)(run.step.x * to_x);
+        piece.step_y = (float)(run.step.y * to_y);
+        view_piece(view, gray, &piece, view->level + j * view->width);
     }
 }
 
@@ -175,131 +209,173 @@ void l1l2_border_view(const L1L2BorderView *view, const L1L2BorderGray *gray, co
     l1l2_border_view_halve(view, band);
 }
 
-/* One patch of the own picture: its levels and slopes, row by row. */
+/* One patch of the own picture. Pixels of which something is not known have known = 0, others 1. */
 typedef struct Patch {
-    int count;
-    float level[PIXELS];
-    float slope_x[PIXELS];
-    float slope_y[PIXELS];
-    int16_t x[PIXELS], y[PIXELS];
-    double contrast; /* mean distance from the mean level */
+    int left, top;       /* of its pixels, in the level */
+    int count;           /* known ones */
+    float known[ROWS][LANES], level[ROWS][LANES], slope_x[ROWS][LANES], slope_y[ROWS][LANES];
+    double contrast;     /* mean distance from the mean level */
 } Patch;
 
-/* Takes every second pixel, as on a chessboard: all of them give the same displacements in twice the time. */
-static void take_patch(const Level *level, double center_x, double center_y, Patch *patch)
+/* What the neighbor shows at a patch's pixels, compared with it. */
+typedef struct Differences {
+    int count;           /* pixels that both show */
+    float seen[ROWS][LANES]; /* 1 for those, 0 for others */
+    float e[ROWS][LANES];    /* N(x + u) - O(x) without their mean; 0 where not seen */
+    double left;         /* the mean size of e */
+} Differences;
+
+static float sum_of(const float *lane)
 {
-    const int cx = (int)lround(center_x), cy = (int)lround(center_y), width = level->width;
-    patch->count = 0;
-    double sum = 0.0;
-    for (int y = cy - PATCH; y <= cy + PATCH; y++)
-        for (int x = cx - PATCH; x <= cx + PATCH; x++) {
-            if (((x + y) & 1) || x < 1 || y < 1 || x > width - 2 || y > level->height - 2)
-                continue;
-            const float *p = level->own + y * width + x;
-            if (p[0] < 0.0f || p[-1] < 0.0f || p[1] < 0.0f || p[-width] < 0.0f || p[width] < 0.0f)
-                continue;
-            const int n = patch->count++;
-            patch->level[n] = p[0];
-            patch->slope_x[n] = 0.5f * (p[1] - p[-1]);
-            patch->slope_y[n] = 0.5f * (p[width] - p[-width]);
-            patch->x[n] = (int16_t)x;
-            patch->y[n] = (int16_t)y;
-            sum += p[0];
-        }
-    const double mean = patch->count ? sum / patch->count : 0.0;
-    patch->contrast = 0.0;
-    for (int n = 0; n < patch->count; n++)
-        patch->contrast += fabs(patch->level[n] - mean);
-    patch->contrast /= patch->count ? patch->count : 1;
+    float sum = 0.0f;
+    for (int i = 0; i < LANES; i++)
+        sum += lane[i];
+    return sum;
 }
 
-/* The differences N(x + u) - O(x) without their mean. All pixels of a patch are displaced alike, so they share the
- * weights of their bilinear samples. A pixel that N does not show has no difference: `seen` says which ones have.
- * Returns how many there are; *left: their mean size. */
-static int differences(const Level *level, const Patch *patch, L1L2Point shift, float *e, bool *seen, double *left)
+enum { BLOCK_COLUMNS = LANES + 2, BLOCK_ROWS = SIDE + 2 };
+
+/* A part of a picture that can reach beyond it, where nothing is known. */
+typedef struct Block {
+    const float *at;     /* its first pixel */
+    ptrdiff_t stride;
+    float copy[BLOCK_ROWS * BLOCK_COLUMNS];
+} Block;
+
+static void take_block(const Level *level, const float *picture, int left, int top, Block *block)
 {
-    const int width = level->width, dx = (int)floor(shift.x), dy = (int)floor(shift.y);
-    const float fx = (float)(shift.x - dx), fy = (float)(shift.y - dy);
-    int count = 0;
-    double sum = 0.0, size = 0.0;
-    for (int n = 0; n < patch->count; n++) {
-        const int x = patch->x[n] + dx, y = patch->y[n] + dy;
-        seen[n] = x >= 0 && y >= 0 && x < width - 1 && y < level->height - 1;
-        if (!seen[n])
-            continue;
-        const float *p = level->neighbor + y * width + x;
-        seen[n] = p[0] >= 0.0f && p[1] >= 0.0f && p[width] >= 0.0f && p[width + 1] >= 0.0f;
-        const float above = p[0] + fx * (p[1] - p[0]), below = p[width] + fx * (p[width + 1] - p[width]);
-        e[n] = above + fy * (below - above) - patch->level[n];
-        if (!seen[n])
-            continue;
-        sum += e[n];
-        count++;
+    const int width = level->width, height = level->height;
+    if (left >= 0 && top >= 0 && left + BLOCK_COLUMNS <= width && top + BLOCK_ROWS <= height) {
+        block->at = picture + (ptrdiff_t)top * width + left;
+        block->stride = width;
+        return;
     }
-    const float mean = count ? (float)(sum / count) : 0.0f;
-    for (int n = 0; n < patch->count; n++)
-        if (seen[n]) {
-            e[n] -= mean;
-            size += e[n] < 0.0f ? -e[n] : e[n];
+    for (int y = 0; y < BLOCK_ROWS; y++)
+        for (int x = 0; x < BLOCK_COLUMNS; x++) {
+            const bool inside = left + x >= 0 && left + x < width && top + y >= 0 && top + y < height;
+            block->copy[y * BLOCK_COLUMNS + x] = inside ? picture[(ptrdiff_t)(top + y) * width + left + x] : -1.0f;
         }
-    *left = count ? size / count : 0.0;
-    return count;
+    block->at = block->copy;
+    block->stride = BLOCK_COLUMNS;
+}
+
+static void take_patch(const Level *level, double center_x, double center_y, Patch *patch)
+{
+    Block block;
+    float count[LANES] = {0}, sum[LANES] = {0}, contrast[LANES] = {0};
+    patch->left = (int)lround(center_x) - PATCH;
+    patch->top = (int)lround(center_y) - PATCH;
+    take_block(level, level->own, patch->left - 1, patch->top - 1, &block);
+    for (int row = 0; row < ROWS; row++) {
+        const float *p = block.at + (2 * row + 1) * block.stride + 1;
+        const float *above = p - block.stride, *below = p + block.stride;
+        for (int i = 0; i < LANES; i++) {
+            const float known = (p[i] >= 0.0f) & (p[i - 1] >= 0.0f) & (p[i + 1] >= 0.0f) & (above[i] >= 0.0f) &
+                                (below[i] >= 0.0f) & (i < SIDE) ? 1.0f : 0.0f;
+            patch->known[row][i] = known;
+            patch->level[row][i] = p[i];
+            patch->slope_x[row][i] = 0.5f * (p[i + 1] - p[i - 1]);
+            patch->slope_y[row][i] = 0.5f * (below[i] - above[i]);
+            count[i] += known;
+            sum[i] += known * p[i];
+        }
+    }
+    patch->count = (int)sum_of(count);
+    const float mean = patch->count ? sum_of(sum) / (float)patch->count : 0.0f;
+    for (int row = 0; row < ROWS; row++)
+        for (int i = 0; i < LANES; i++)
+            contrast[i] += patch->known[row][i] * fabsf(patch->level[row][i] - mean);
+    patch->contrast = (double)sum_of(contrast) / (patch->count ? patch->count : 1);
+}
+
+/* The differences at a displacement. All pixels of a patch are displaced alike, so they share the weights of their
+ * bilinear samples. False: too few pixels are seen. */
+static bool compare(const Level *level, const Patch *patch, L1L2Point shift, Differences *found)
+{
+    const int dx = (int)floor(shift.x), dy = (int)floor(shift.y);
+    const float fx = (float)(shift.x - dx), fy = (float)(shift.y - dy);
+    Block block;
+    float count[LANES] = {0}, sum[LANES] = {0}, size[LANES] = {0};
+    take_block(level, level->neighbor, patch->left + dx, patch->top + dy, &block);
+    for (int row = 0; row < ROWS; row++) {
+        const float *p = block.at + 2 * row * block.stride, *q = p + block.stride;
+        for (int i = 0; i < LANES; i++) {
+            const float both = (p[i] >= 0.0f) & (p[i + 1] >= 0.0f) & (q[i] >= 0.0f) & (q[i + 1] >= 0.0f) ? 1.0f : 0.0f;
+            const float above = p[i] + fx * (p[i + 1] - p[i]), below = q[i] + fx * (q[i + 1] - q[i]);
+            const float seen = both * patch->known[row][i];
+            const float e = seen * (above + fy * (below - above) - patch->level[row][i]);
+            found->seen[row][i] = seen;
+            found->e[row][i] = e;
+            count[i] += seen;
+            sum[i] += e;
+        }
+    }
+    found->count = (int)sum_of(count);
+    const float mean = found->count ? sum_of(sum) / (float)found->count : 0.0f;
+    for (int row = 0; row < ROWS; row++)
+        for (int i = 0; i < LANES; i++) {
+            found->e[row][i] -= found->seen[row][i] * mean;
+            size[i] += fabsf(found->e[row][i]);
+        }
+    found->left = found->count ? (double)sum_of(size) / found->count : 0.0;
+    return found->count >= ENOUGH;
 }
 
 /* One step of Gauss-Newton with weights 1 / (1 + (e / s)^2), s half more than the mean difference. False: the patch has
  * no slopes. */
-static bool step(const Patch *patch, const float *e, const bool *seen, double left, Node *node, L1L2Point *by)
+static bool step(const Patch *patch, const Differences *found, Node *node, L1L2Point *by)
 {
-    const float scale = 1.0f / (float)fmax(1.5 * left, 1.0);
-    float xx = 0.0f, xy = 0.0f, yy = 0.0f, bx = 0.0f, by_ = 0.0f;
-    for (int n = 0; n < patch->count; n++) {
-        if (!seen[n])
-            continue;
-        const float z = e[n] * scale, w = 1.0f / (1.0f + z * z), gx = w * patch->slope_x[n], gy = w * patch->slope_y[n];
-        xx += gx * patch->slope_x[n];
-        xy += gx * patch->slope_y[n];
-        yy += gy * patch->slope_y[n];
-        bx += gx * e[n];
-        by_ += gy * e[n];
-    }
-    node->xx = xx, node->xy = xy, node->yy = yy;
-    const double a = xx + prior, c = yy + prior, det = a * c - node->xy * node->xy;
+    const float scale = 1.0f / (float)fmax(1.5 * found->left, 1.0);
+    float xx[LANES] = {0}, xy[LANES] = {0}, yy[LANES] = {0}, xe[LANES] = {0}, ye[LANES] = {0};
+    for (int row = 0; row < ROWS; row++)
+        for (int i = 0; i < LANES; i++) {
+            const float e = found->e[row][i], z = e * scale, w = found->seen[row][i] / (1.0f + z * z);
+            const float slope_x = patch->slope_x[row][i], slope_y = patch->slope_y[row][i];
+            const float gx = w * slope_x, gy = w * slope_y;
+            xx[i] += gx * slope_x;
+            xy[i] += gx * slope_y;
+            yy[i] += gy * slope_y;
+            xe[i] += gx * e;
+            ye[i] += gy * e;
+        }
+    node->xx = sum_of(xx), node->xy = sum_of(xy), node->yy = sum_of(yy);
+    const double a = node->xx + prior, c = node->yy + prior, det = a * c - node->xy * node->xy;
+    const double bx = sum_of(xe), by_ = sum_of(ye);
     *by = (L1L2Point){-(c * bx - node->xy * by_) / det, -(a * by_ - node->xy * bx) / det};
     return det > 0.0;
+}
+
+static bool is_beyond_reach(L1L2Point shift, L1L2Point start)
+{
+    return fabs(shift.x - start.x) > REACH || fabs(shift.y - start.y) > REACH;
 }
 
 /* Registers the patch around a node, from node->shift on. */
 static void register_patch(const Level *level, double x, double y, Node *node)
 {
     Patch patch;
-    float e[PIXELS];
-    bool seen[PIXELS];
+    Differences found;
     const L1L2Point start = node->shift;
     L1L2Point by;
-    double left, left_at_start;
     node->known = false;
     take_patch(level, x, y, &patch);
-    const int enough = PIXELS / 8;
-    if (patch.count < enough || differences(level, &patch, start, e, seen, &left_at_start) < enough)
+    if (patch.count < ENOUGH || !compare(level, &patch, start, &found))
         return;
-    left = left_at_start;
+    const double left_at_start = found.left;
     for (int i = 0; i < ITERATIONS; i++) {
-        if (!step(&patch, e, seen, left, node, &by))
+        if (!step(&patch, &found, node, &by))
             return;
         node->shift.x += by.x;
         node->shift.y += by.y;
-        if (fabs(node->shift.x - start.x) > REACH || fabs(node->shift.y - start.y) > REACH)
-            break;
-        if (differences(level, &patch, node->shift, e, seen, &left) < enough)
-            break;
-        if (hypot(by.x, by.y) < settled_px)
+        if (is_beyond_reach(node->shift, start) || !compare(level, &patch, node->shift, &found) ||
+            hypot(by.x, by.y) < settled_px)
             break;
     }
-    if (!(left < left_at_start) || fabs(node->shift.x - start.x) > REACH || fabs(node->shift.y - start.y) > REACH) {
+    if (!(found.left < left_at_start) || is_beyond_reach(node->shift, start)) {
         node->shift = start;
-        differences(level, &patch, start, e, seen, &left);
+        compare(level, &patch, start, &found);
     }
-    node->left = left / (patch.contrast + noise_levels);
+    node->left = found.left / (patch.contrast + noise_levels);
     /* What does not match after all says little. */
     const double trust = fmax(1.0 - node->left, 0.05);
     node->xx *= trust * trust;

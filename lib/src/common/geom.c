@@ -84,6 +84,11 @@ L1L2Point l1l2_mat_apply(const L1L2Mat *m, L1L2Point p)
     return (L1L2Point){(v[0] * p.x + v[1] * p.y + v[2]) / w, (v[3] * p.x + v[4] * p.y + v[5]) / w};
 }
 
+bool l1l2_mat_is_affine(const L1L2Mat *m)
+{
+    return m->m[6] == 0.0 && m->m[7] == 0.0 && m->m[8] == 1.0;
+}
+
 bool l1l2_mat_is_finite(const L1L2Mat *m)
 {
     for (int i = 0; i < 9; i++)

@@ -64,6 +64,7 @@ static inline L1L2Point l1l2_mat_apply_affine(const L1L2Mat *m, L1L2Point p)
 {
     return (L1L2Point){m->m[0] * p.x + m->m[1] * p.y + m->m[2], m->m[3] * p.x + m->m[4] * p.y + m->m[5]};
 }
+bool l1l2_mat_is_affine(const L1L2Mat *m);
 bool l1l2_mat_is_finite(const L1L2Mat *m);
 bool l1l2_mat_is_identity(const L1L2Mat *m);
 

@@ -31,8 +31,11 @@ void l1l2_warp_mesh_clear(L1L2WarpMesh *mesh)
 
 void l1l2_warp_mesh_set(L1L2WarpMesh *mesh, const L1L2Mat *map)
 {
+    const bool affine = l1l2_mat_is_affine(map);
     for (int row = 0; row < mesh->rows; row++)
-        for (int column = 0; column < mesh->columns; column++)
+        for (int column = 0; column < mesh->columns; column++) {
+            const L1L2Point at = l1l2_warp_mesh_position(mesh, column, row);
             mesh->node[row * mesh->columns + column] =
-                l1l2_mat_apply(map, l1l2_warp_mesh_position(mesh, column, row));
+                affine ? l1l2_mat_apply_affine(map, at) : l1l2_mat_apply(map, at);
+        }
 }

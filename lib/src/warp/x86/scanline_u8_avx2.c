@@ -6,7 +6,9 @@
  * lanes. Two neighboring taps of a quarter's lanes lie within eight values of the scanline, its window: a shuffle puts
  * them side by side, pmaddwd weighs and adds them.
  */
+#include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "warp/scanline_u8_impl.h"
 #include "warp/x86/lanes_avx2.h"
@@ -141,27 +143,54 @@ L1L2_INLINE __m256i group_down(const Rows *rows, const L1L2WarpKernel *kernel, c
     return sum_steep(rows, &w, further, shape.taps);
 }
 
-/* Groups of columns of a piece, and what the last group has beyond. All taps are in the plane.
- *
- * Pointers are formed group by group, and only to a group's topmost taps. A pointer for an empty range, or to a row
- * above the first one, would lie outside the plane. */
+/* What a group of columns may reach beyond the plane. */
+enum { BLOCK_ROWS = L1L2_WARP_MAX_TAPS + 9, BLOCK_BYTES = LANES }; /* 16 columns go up or down by 8 rows at most */
+
+/* Copies the rows of a group, with the plane's edge repeated beyond it. */
+static void copy_block(const L1L2WarpPlane *src, int64_t row, int64_t column, int count, const int components,
+                       uint8_t *block)
+{
+    const bool whole = column >= 0 && column * components + BLOCK_BYTES <= (int64_t)src->width * components;
+    for (int r = 0; r < count; r++, block += BLOCK_BYTES) {
+        const uint8_t *line = src->data + l1l2_warp_clamp((int)(row + r), src->height) * src->stride;
+        if (whole) {
+            memcpy(block, line + column * components, BLOCK_BYTES);
+            continue;
+        }
+        for (int i = 0; i < BLOCK_BYTES / components; i++)
+            memcpy(block + i * components,
+                   line + (ptrdiff_t)l1l2_warp_clamp((int)(column + i), src->width) * components, (size_t)components);
+    }
+}
+
+/* Groups of columns of a piece, and what the last group has beyond. A group that reaches beyond the plane reads a copy
+ * of its taps, since a pointer to what is not there would lie outside the plane. */
 L1L2_INLINE void piece_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, int first_column, Entries columns,
                             int16_t *values, const Shape shape, const int crossing)
 {
     const L1L2WarpPiece *piece = columns.piece;
-    const int components = shape.components, group = group_of(components);
+    const int components = shape.components, group = group_of(components), lead = shape.taps / 2 - 1;
+    /* A group has all of its columns, and sixteen bytes, in the plane if it begins before this one. */
+    const int outside = src->width - (LANES + components - 1) / components + 1;
     const int64_t across = (int64_t)(group - 1) * piece->step, to_low = piece->step < 0 ? across : 0;
+    uint8_t block[BLOCK_ROWS * BLOCK_BYTES];
     Steps steps = steps_of(piece, components);
-    steps.at += (int64_t)(columns.from - piece->from) * piece->step;
     for (int i = columns.from; i < columns.to; i += group) {
         const int64_t low = steps.at + to_low, row = low >> L1L2_WARP_STEP_BITS;
         const ptrdiff_t column = first_column + i;
-        const Rows rows = {
-            .first = src->data + (row - (shape.taps / 2 - 1)) * src->stride + column * components,
-            .stride = src->stride,
+        Rows rows = {
             .row = row,
             .more = (int)(((low == steps.at ? low + across : steps.at) >> L1L2_WARP_STEP_BITS) - row),
         };
+        const int count = shape.taps + (crossing == FLAT ? 0 : crossing == CROSSING ? 1 : rows.more);
+        if (column >= 0 && column < outside && row >= lead && row - lead + count <= src->height) {
+            rows.first = src->data + (row - lead) * src->stride + column * components;
+            rows.stride = src->stride;
+        } else {
+            copy_block(src, row - lead, column, count, components, block);
+            rows.first = block;
+            rows.stride = BLOCK_BYTES;
+        }
         const __m256i sum = group_down(&rows, kernel, &steps, shape, crossing);
         _mm256_storeu_si256((void *)(values + i * components), sum);
         steps.at += (int64_t)group * piece->step;
@@ -176,28 +205,17 @@ L1L2_INLINE int row_of(const L1L2WarpPiece *piece, int i)
 L1L2_INLINE void run_down(const L1L2WarpPlane *src, const L1L2WarpKernel *kernel, const L1L2WarpScanline *scanline,
                           int16_t *values, const Shape shape)
 {
-    const int taps = shape.taps, components = shape.components;
-    const int group = group_of(components), lead = taps / 2 - 1, first = scanline->first;
-    /* A group that begins in inside .. outside - 1 has all of its columns, and sixteen bytes, in the plane. */
-    const int inside = -first, outside = src->width - first - (LANES + components - 1) / components + 1;
+    const int group = group_of(shape.components);
     for (int k = 0; k < scanline->down_pieces; k++) {
         const L1L2WarpPiece *piece = &scanline->down[k];
-        const int end = end_of(scanline->down, k, scanline->down_pieces, scanline->columns);
-        const int row = row_of(piece, piece->from), last_row = row_of(piece, end + group - 1);
-        const int low = row < last_row ? row : last_row, high = row < last_row ? last_row : row;
-        int from = piece->from > inside ? piece->from : inside < end ? inside : end;
-        int to = end < outside ? end : outside > from ? from + (outside - from + group - 1) / group * group : from;
-        if (low < lead || high + taps - lead >= src->height)
-            from = to = end;
-        const Entries groups = {piece, from, to};
-        down_plain(src, kernel, first, (Entries){piece, piece->from, from}, values, shape);
-        if (scanline->down_pieces == 1 && low == high)
-            piece_down(src, kernel, first, groups, values, shape, FLAT);
+        const Entries columns = {piece, piece->from, end_of(scanline->down, k, scanline->down_pieces,
+                                                            scanline->columns)};
+        if (scanline->down_pieces == 1 && row_of(piece, columns.from) == row_of(piece, columns.to + group - 1))
+            piece_down(src, kernel, scanline->first, columns, values, shape, FLAT);
         else if (abs(piece->step) <= (1 << L1L2_WARP_STEP_BITS) / group)
-            piece_down(src, kernel, first, groups, values, shape, CROSSING);
+            piece_down(src, kernel, scanline->first, columns, values, shape, CROSSING);
         else
-            piece_down(src, kernel, first, groups, values, shape, STEEP);
-        down_plain(src, kernel, first, (Entries){piece, to, end}, values, shape);
+            piece_down(src, kernel, scanline->first, columns, values, shape, STEEP);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "input.h"
 
 #include "fault.h"
+#include "say.h"
 #include "truncation.h"
 
 #include <errno.h>
@@ -207,6 +208,18 @@ static gboolean choose_stream(Input *input, int wanted, GError **error)
     return TRUE;
 }
 
+/* A pixel is up to twice as wide as high. One of 1:257 comes from a damaged header, and a picture that x264 codes with
+ * such pixels cannot be decoded again by FFmpeg. The bounds are those of the library. */
+static void check_pixel_aspect(Input *input)
+{
+    AVStream *video = input->video;
+    const AVRational pixel = av_guess_sample_aspect_ratio(input->format, video, NULL);
+    if (pixel.num <= 0 || pixel.den <= 0 || (av_q2d(pixel) >= 0.1 && av_q2d(pixel) <= 10.0))
+        return;
+    say_note("%s: its header says that pixels are %d:%d; they are taken for square", input->name, pixel.num, pixel.den);
+    video->sample_aspect_ratio = video->codecpar->sample_aspect_ratio = av_make_q(1, 1);
+}
+
 gboolean input_explain_encryption(const Input *input, GError **error)
 {
     return fault(error, EXIT_INPUT, "%s: is encrypted (DRM), so its picture cannot be decoded", input->name);
@@ -223,6 +236,7 @@ static gboolean find_streams(Input *input, int wanted, GError **error)
         return FALSE;
     if (is_encrypted(input->video))
         return input_explain_encryption(input, error);
+    check_pixel_aspect(input);
     if (input->format->start_time != AV_NOPTS_VALUE && input->format->start_time > 0)
         input->origin_us = input->format->start_time;
     return TRUE;

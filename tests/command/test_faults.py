@@ -93,6 +93,17 @@ class Inputs(Case):
         self.assertIn('audio stream 1 is left out', run.stderr)
         self.assertGreater(len(probe.File(self.out / 'a.ts').frames), 10)
 
+    def test_pixels_that_no_camera_has_are_taken_for_square(self):
+        for aspect in '1/257', '500/1':
+            damaged, steady = self.path / 'damaged.avi', self.out / 'steady.mkv'
+            kinds.ffmpeg(*kinds.video(96, 64, 25, 0.6), '-vf', f'setsar={aspect}', '-c:v', 'mpeg4', damaged)
+            run = self.run_command(damaged.name, '-o', 'out/steady.mkv', '--window=6', code=0)
+            self.assertIn('they are taken for square', run.stderr)
+            stream = probe.ffprobe(steady, '-show_streams', '-count_frames')['streams'][0]
+            self.assertEqual((stream['sample_aspect_ratio'], stream['nb_read_frames']), ('1:1', '15'))
+            damaged.unlink()
+            steady.unlink()
+
     def test_an_encrypted_file_is_named(self):
         kinds.ffmpeg('-i', self.clip, '-c', 'copy', '-encryption_scheme', 'cenc-aes-ctr', '-encryption_key', '0' * 32,
                      '-encryption_kid', '1' * 32, self.path / 'secret.mp4')

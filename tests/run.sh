@@ -6,6 +6,8 @@
 #                                                          and UndefinedBehaviorSanitizer, built in build-sanitize
 #        tests/run.sh --threads [MESON_TEST_OPTION...]     the tests with several threads under ThreadSanitizer, built
 #                                                          by clang in build-threads
+#        tests/run.sh --valgrind [MESON_TEST_OPTION...]    the library's tests, but the slow ones, under valgrind: also
+#                                                          values that were never set
 #        tests/run.sh --long [MESON_TEST_OPTION...]        only the long tests, which the others leave out: the filter
 #                                                          in an ffmpeg that they build, half an hour at first; Debian
 #                                                          packages, built and installed in a clean root; the Python
@@ -37,6 +39,12 @@ elif [[ ${1:-} == --threads ]]; then
   test_options=(--timeout-multiplier 10 --num-processes 1 --no-suite codecs)
   export CC=clang CXX=clang++ CK_TIMEOUT_MULTIPLIER=10
   [[ $# -gt 0 ]] || test_options+=(--suite threads --suite plugin)
+elif [[ ${1:-} == --valgrind ]]; then
+  shift
+  wrapper='valgrind --quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite'
+  test_options=(--timeout-multiplier 40 --wrapper "$wrapper --suppressions=$top/tests/valgrind.supp")
+  export CK_TIMEOUT_MULTIPLIER=40
+  [[ $# -gt 0 ]] || test_options+=(--suite lib --no-suite slow --no-suite threads)
 elif [[ ${1:-} == --long ]]; then
   shift
   test_options=(--suite long)

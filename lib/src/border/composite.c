@@ -314,7 +314,7 @@ static void add_source(Blend *blend, int first, const Run *run, const L1L2Border
     float *rest = blend->rest + first, *most = blend->most + first, *trusting = blend->trusting.rest + first;
     int32_t *whose = blend->provider + first, *nearest = blend->trusting.provider + first;
     for (int i = 0; i < count; i++)
-        nearest[i] = (nearest[i] == L1L2_BORDER_OWN) & (trusted[i] > 0.0f) ? provider : nearest[i];
+        nearest[i] = ((nearest[i] == L1L2_BORDER_OWN) & (trusted[i] > 0.0f)) ? provider : nearest[i];
     for (int i = 0; i < count; i++) {
         weight[i] *= trusted[i] * rest[i];
         trusted[i] *= trusting[i];
@@ -393,20 +393,24 @@ static void fill_rest(Blend *blend, const Run *run, const Positions *own, int fi
     }
 }
 
-/* Adds the frame itself, which is in the output. Inside, it takes what the sources leave. */
+/* The part that the frame itself has of a sample. Inside, it takes what the sources leave. */
+static inline float own_part(const Blend *blend, const float *depth, int i)
+{
+    return depth[i] < 0.0f ? 0.0f : blend->mine[i] + blend->rest[i];
+}
+
+/* Adds the frame itself, which is in the output. */
 static void add_own(Blend *blend, const Run *run, const float *depth)
 {
     const Plane *plane = run->plane;
     const L1L2BorderComposite *c = plane->composite;
-    float keeps[RUN], level[RUN];
-    for (int i = 0; i < run->count; i++) {
-        keeps[i] = depth[i] < 0.0f ? 0.0f : blend->mine[i] + blend->rest[i];
-        blend->provider[i] = keeps[i] > blend->most[i] ? L1L2_BORDER_OWN : blend->provider[i];
-    }
+    float level[RUN];
+    for (int i = 0; i < run->count; i++)
+        blend->provider[i] = own_part(blend, depth, i) > blend->most[i] ? L1L2_BORDER_OWN : blend->provider[i];
     for (int k = 0; k < plane->components; k++) {
         read_run(run, c->dst[plane->index], c->dst_stride[plane->index], k, level);
         for (int i = 0; i < run->count; i++)
-            level[i] = blend->value[k][i] + keeps[i] * level[i];
+            level[i] = blend->value[k][i] + own_part(blend, depth, i) * level[i];
         write_run(run, c->dst[plane->index], c->dst_stride[plane->index], k, level);
     }
 }

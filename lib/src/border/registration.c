@@ -270,8 +270,9 @@ static void take_patch(const Level *level, double center_x, double center_y, Pat
         const float *p = block.at + (2 * row + 1) * block.stride + 1;
         const float *above = p - block.stride, *below = p + block.stride;
         for (int i = 0; i < LANES; i++) {
-            const float known = (p[i] >= 0.0f) & (p[i - 1] >= 0.0f) & (p[i + 1] >= 0.0f) & (above[i] >= 0.0f) &
-                                (below[i] >= 0.0f) & (i < SIDE) ? 1.0f : 0.0f;
+            const int all = (p[i] >= 0.0f) & (p[i - 1] >= 0.0f) & (p[i + 1] >= 0.0f) & (above[i] >= 0.0f) &
+                            (below[i] >= 0.0f) & (i < SIDE);
+            const float known = all ? 1.0f : 0.0f;
             patch->known[row][i] = known;
             patch->level[row][i] = p[i];
             patch->slope_x[row][i] = 0.5f * (p[i + 1] - p[i - 1]);
@@ -300,7 +301,8 @@ static bool compare(const Level *level, const Patch *patch, L1L2Point shift, Dif
     for (int row = 0; row < ROWS; row++) {
         const float *p = block.at + 2 * row * block.stride, *q = p + block.stride;
         for (int i = 0; i < LANES; i++) {
-            const float both = (p[i] >= 0.0f) & (p[i + 1] >= 0.0f) & (q[i] >= 0.0f) & (q[i + 1] >= 0.0f) ? 1.0f : 0.0f;
+            const int all = (p[i] >= 0.0f) & (p[i + 1] >= 0.0f) & (q[i] >= 0.0f) & (q[i + 1] >= 0.0f);
+            const float both = all ? 1.0f : 0.0f;
             const float above = p[i] + fx * (p[i + 1] - p[i]), below = q[i] + fx * (q[i + 1] - q[i]);
             const float seen = both * patch->known[row][i];
             const float e = seen * (above + fy * (below - above) - patch->level[row][i]);

@@ -132,7 +132,7 @@ enum { FLAT, CROSSING, STEEP };
 L1L2_INLINE __m256i group_down(const Rows *rows, const L1L2WarpKernel *kernel, const Steps *steps, const Shape shape,
                                const int crossing)
 {
-    const int32_t from_row = (int32_t)(steps->at - (rows->row << L1L2_WARP_STEP_BITS));
+    const int32_t from_row = (int32_t)(steps->at - rows->row * ((int64_t)1 << L1L2_WARP_STEP_BITS));
     const __m256i position = positions_from(steps, from_row, shape.components, true);
     const __m256i further = _mm256_srai_epi16(position, L1L2_WARP_PHASE_BITS);
     const TapWeights w = weigh(kernel, steps, position, shape, true);
